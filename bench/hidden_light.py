@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Light that is hard to find: the error of each method after the same time.
 
-Renders a scene by path tracing, with guided paths, bidirectionally and by Metropolis transport, each for the same wall
-time, and compares with a reference picture (its noise is in every relMSE, and makes ratios smaller). Usage:
+Renders a scene by path tracing, with guided paths, bidirectionally without and with merging, and by Metropolis
+transport, each for the same wall time, and compares with a reference picture (its noise is in every relMSE, and makes
+ratios smaller). Usage:
 
     bench/hidden_light.py build/release/montelux scene.pbrt reference.exr --seconds 60 [--threads 2] [--keep FOLDER]
 """
@@ -19,6 +20,7 @@ METHODS = {
     "path, guided": ["--guiding", "on"],
     "path, guided auto": ["--guiding", "auto"],
     "bidirectional": ["--integrator", "bidirectional"],
+    "bidirectional, merging": ["--integrator", "bidirectional", "--merging", "auto"],
     "metropolis": ["--integrator", "metropolis"],
     "auto": ["--integrator", "auto"],
 }

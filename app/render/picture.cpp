@@ -221,6 +221,10 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
                         quantile_text(result.quantile).c_str(), visible_text(visible).c_str(),
                         duration_text(report.seconds).c_str(), ending_text(report, target).c_str(),
                         denoised.c_str());
+        if (const std::string notice = merging_notice(result, target); !notice.empty())
+            std::printf("%s\n", notice.c_str());
+        if (const std::string warning = merging_memory_warning(report.merging); !warning.empty())
+            std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = chain_warning(report.chains); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = missing_error_warning(result, session->renderer()); !warning.empty())

@@ -79,6 +79,16 @@ std::array<double, 4> parse_crop(const std::string& option, const std::string& s
     return crop;
 }
 
+std::optional<float> parse_merging(const std::string& option, const std::string& s) {
+    if (s == "off") return std::nullopt;
+    if (s == "auto") return 0.0f;
+    double radius = 0;
+    const auto [end, error] = std::from_chars(s.data(), s.data() + s.size(), radius);
+    if (error != std::errc() || end != s.data() + s.size() || !(radius > 1e-30 && radius < 1e30))
+        refuse(option, s, "off, auto or a radius above 0, in units of the scene, is expected");
+    return static_cast<float>(radius);
+}
+
 SampleAddress parse_sample(const std::string& option, const std::string& s) {
     SampleAddress a;
     const char* end = s.data() + s.size();

@@ -19,6 +19,8 @@ LightGrouping parse_light_grouping(const std::string& option, const std::string&
 Slice parse_slice(const std::string& option, const std::string& s);
 std::pair<int, int> parse_resolution(const std::string& option, const std::string& s);
 std::array<double, 4> parse_crop(const std::string& option, const std::string& s);
+// Of --merging: empty: off; 0: auto.
+std::optional<float> parse_merging(const std::string& option, const std::string& s);
 SampleAddress parse_sample(const std::string& option, const std::string& s);
 RenderOptions::Shutter parse_shutter(const std::string& option, const std::string& s);
 std::vector<std::uint32_t> read_frames(const std::string& option, const std::string& s);

@@ -200,6 +200,17 @@ void declare(CLI::App& c, RenderOptions& o) {
         "never, the default: ");
     add_whole_number(c, "--guiding-memory", o.guiding_memory, 16, 1u << 20,
                      "MiB that learning may take. Default: 256");
+    add_parsed(
+        c, "--merging", "off|auto|RADIUS", o.merging, parse_merging,
+        "Of bidirectional: camera paths also end at the light paths that pass within RADIUS (units of the "
+        "scene), which finds caustics in mirrors and under water. Discs shrink from pass to pass: the "
+        "picture "
+        "is consistent, not unbiased, and its errors cover noise alone; --stats estimates the bias. auto: by "
+        "the size of a pixel. Default: off");
+    add_whole_number(
+        c, "--merging-memory", o.merging_memory, 1, 1u << 20,
+        "MiB that the light paths of a pass may take; where it is too little, fewer of them merge. "
+        "Default: 192");
     add_parsed(c, "--equiangular", "on|off", o.equiangular, parse_on_off,
                "In media lamps are also looked for from points of the ray close to them: on, off. "
                "Default: on");
@@ -282,6 +293,15 @@ void apply(const RenderOptions& o, SceneDescription& d) {
     if (o.light_sampling) d.integrator.light_sampling = *o.light_sampling;
     if (o.guiding) d.integrator.guiding = *o.guiding;
     if (o.guiding_memory) d.integrator.guiding_memory = *o.guiding_memory;
+    if (o.merging) {
+        d.integrator.merging.reset();
+        if (*o.merging) d.integrator.merging = MergingSettings{.radius = **o.merging};
+    }
+    if (o.merging_memory) {
+        if (!d.integrator.merging)
+            throw UsageError("--merging-memory", "expected --merging auto or a radius: paths do not merge");
+        d.integrator.merging->memory = *o.merging_memory;
+    }
     if (o.equiangular) d.integrator.equiangular = *o.equiangular;
     if (o.environment_sampling) d.integrator.environment_sampling = *o.environment_sampling;
     if (o.environment_compensation) d.integrator.environment_compensation = *o.environment_compensation;

@@ -54,6 +54,8 @@ struct RenderOptions {
     std::optional<LightSampling> light_sampling;
     std::optional<Guiding> guiding;
     std::optional<std::uint64_t> guiding_memory; // MiB
+    std::optional<std::optional<float>> merging; // empty inside: off; 0: chosen automatically
+    std::optional<std::uint64_t> merging_memory; // MiB
     std::optional<bool> equiangular;
     std::optional<MicrofacetScattering> microfacet_scattering;
     std::optional<ShadingTerminator> shading_terminator;

@@ -59,6 +59,11 @@ void print_statistics(const RenderReport& report, double load_seconds, const Ren
         rays / samples, static_cast<double>(report.rays.closest) / samples,
         static_cast<double>(report.rays.occlusion) / samples);
     if (report.chains.groups > 0) print_chains(report.chains);
+    if (const MergingSummary& m = report.merging; m.first_radius > 0)
+        std::printf(
+            "merging            radius %.4g to %.4g, %llu of %llu light paths of a pass, map of %.1f MiB\n",
+            m.first_radius, m.last_radius, static_cast<unsigned long long>(m.light_paths),
+            static_cast<unsigned long long>(m.of_paths), static_cast<double>(m.bytes) / (1 << 20));
     std::printf("inside Embree      %.1f %% of the CPU time\n",
                 100 * report.ray_seconds / report.cpu_seconds);
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(peak_memory()) / (1 << 20));

@@ -1,5 +1,7 @@
 #include "montelux/render/check_render.h"
 
+#include <cmath>
+
 #include "montelux/film/film_layers.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/render/sample_allocation.h"
@@ -33,12 +35,25 @@ void check_light_tracing(const SceneDescription& d, const RenderTarget& target) 
         throw Error(where,
                     "its light paths reach all pixels at once: samples cannot be allocated to single ones; "
                     "leave out --adaptive or choose 'path'");
+    if (d.integrator.merging && d.integrator.method == IntegratorKind::bidirectional) {
+        if (const float r = d.integrator.merging->radius; !(r >= 0 && std::isfinite(r)))
+            throw Error("merging", "the radius must be positive and finite, or 0 to be chosen automatically");
+        if (d.integrator.merging->memory < 1) throw Error("merging", "the memory must be at least 1 MiB");
+    }
     if (d.film.spectral) throw Error(where, "a spectral film cannot be rendered by it; choose 'path'");
     for (const Layer layer : {Layer::direct, Layer::indirect, Layer::light_groups})
         if (d.film.layers.set.has(layer))
             throw Error(where,
                         "the parts of the light (layers direct, indirect, light-groups) cannot be rendered "
                         "by it; choose 'path'");
+}
+
+// Of a method that cannot merge.
+void check_merging(const SceneDescription& d) {
+    if (d.integrator.merging && d.integrator.method != IntegratorKind::bidirectional)
+        throw Error("merging", "only the integrator 'bidirectional' merges paths, not '" +
+                                   std::string(name_of(d.integrator.method)) +
+                                   "': choose it, or leave merging out");
 }
 
 } // namespace
@@ -63,6 +78,7 @@ void check_render(const SceneDescription& d, const SamplerSettings& sampler, con
         throw Error("slice", "slices are joined by their standard layers; no others can be chosen");
     if (d.integrator.occlusion && d.film.layers.set.has(Layer::light_groups))
         throw Error("film", "ambient occlusion is no light of the scene: 'light-groups' cannot be chosen");
+    check_merging(d);
     if (d.integrator.method == IntegratorKind::metropolis) check_metropolis(d, target);
     if (traces_light(d.integrator.method)) check_light_tracing(d, target);
 }
@@ -71,6 +87,10 @@ void check_sharing(const SceneDescription& d) {
     if (d.film.spectral)
         throw Error("film",
                     "a spectral film cannot be rendered by several processes: they exchange RGB alone");
+    if (merges(d.integrator))
+        throw Error("merging",
+                    "paths that merge cannot be rendered by several processes: the light paths of a "
+                    "pass are in the memory of one");
 }
 
 } // namespace montelux

@@ -76,13 +76,16 @@ std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
     const auto with_guiding = [&](std::uint64_t h) {
         return s.guiding == Guiding::off ? h : hash_of(h, static_cast<int>(s.guiding), s.guiding_memory);
     };
+    const auto with_merging = [&](std::uint64_t h) {
+        return merges(s) ? hash_of(h, s.merging->radius, s.merging->memory) : h;
+    };
     if (s.occlusion) return with_background(hash_of(s.occlusion->cosine, s.occlusion->max_distance));
-    return with_guiding(with_background(
+    return with_merging(with_guiding(with_background(
         hash_of(s.max_depth, s.count_passages, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
                 static_cast<int>(s.light_sampling), s.equiangular, s.regularize,
                 static_cast<int>(s.environment_sampling), s.environment_compensation,
                 static_cast<int>(s.environment_lookup), static_cast<int>(s.microfacet_scattering),
-                static_cast<int>(s.shading_terminator))));
+                static_cast<int>(s.shading_terminator)))));
 }
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }
@@ -127,8 +130,24 @@ std::uint64_t hash_of_layers(const SceneDescription& d, const FilmLayers& layers
     return h == 0 ? 1 : h;
 }
 
+void put(ByteWriter& out, const SplatFilm& film) {
+    out.put_all(film.sums());
+    out.put(film.bad());
+    out.put(film.overflows());
+}
+void get(ByteReader& in, SplatFilm& film) {
+    in.get_all(film.sums());
+    const auto bad = in.get<std::uint64_t>(), overflows = in.get<std::uint64_t>();
+    film.set_counts(bad, overflows);
+}
+
 std::size_t splat_bytes(const RenderState& state) {
-    return state.splats ? state.splats->sums().size_bytes() + 2 * sizeof(std::uint64_t) : 0;
+    const auto of = [](const SplatFilm& film) {
+        return film.sums().size_bytes() + 2 * sizeof(std::uint64_t);
+    };
+    return (state.splats ? of(*state.splats) : 0) +
+           (state.bias ? of(state.bias->open()) + state.bias->cells().size_bytes() + sizeof(std::uint64_t)
+                       : 0);
 }
 
 // An upper bound of the size for this film, generous so that a checkpoint of a larger film is refused by the right
@@ -176,10 +195,11 @@ void save_checkpoint(const std::filesystem::path& path, const Renderer& renderer
         out.put(static_cast<std::uint8_t>(state.guide != nullptr));
         if (state.guide) state.guide->save(out);
     }
-    if (state.splats) {
-        out.put_all(std::as_const(*state.splats).sums());
-        out.put(state.splats->bad());
-        out.put(state.splats->overflows());
+    if (state.splats) put(out, *state.splats);
+    if (state.bias) {
+        put(out, state.bias->open());
+        out.put_all(state.bias->cells());
+        out.put(state.bias->passes());
     }
     write_generation(path, kind, out.take());
 }
@@ -246,10 +266,12 @@ RestoredRender load_checkpoint(const std::filesystem::path& path, const SceneDes
         if (in.get<std::uint8_t>() != 0)
             state.guide = std::make_shared<const GuidingField>(GuidingField::load(in));
     }
-    if (state.splats) {
-        in.get_all(state.splats->sums());
-        const auto bad = in.get<std::uint64_t>(), overflows = in.get<std::uint64_t>();
-        state.splats->set_counts(bad, overflows);
+    if (state.splats) get(in, *state.splats);
+    if (state.bias) {
+        get(in, state.bias->open());
+        std::vector<MergingBias::Cell> cells(state.bias->cells().size());
+        in.get_all(std::span(cells));
+        state.bias->restore(cells, in.get<std::uint64_t>());
     }
     if (!in.at_end() || restored.replicate_points == 0)
         throw Error(path.string(), "the checkpoint is not what its header says");

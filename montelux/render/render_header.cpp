@@ -66,6 +66,17 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
         a["longestSmallStep"] = chains.longest_step;
         a["rHat"] = static_cast<float>(chains.agreement.worst_r_hat());
     }
+    if (const MergingSummary& m = report.merging; m.first_radius > 0) {
+        a["merging"] = std::string("consistent, not unbiased"); // by a bias that no standard error contains
+        a["mergingFirstRadius"] = static_cast<float>(m.first_radius);
+        a["mergingLastRadius"] = static_cast<float>(m.last_radius);
+        a["mergingLightPaths"] = static_cast<int>(std::min<std::uint64_t>(m.light_paths, 1u << 30));
+        if (m.passes >= 2 && error.mean_luminance > 0) { // relative to the mean luminance
+            a["mergingBias"] = static_cast<float>(m.bias / error.mean_luminance);
+            a["mergingBiasError"] = static_cast<float>(m.bias_error / error.mean_luminance);
+            a["mergingBiasRms"] = static_cast<float>(m.bias_rms / error.mean_luminance);
+        }
+    }
     a["strategy"] = std::string(name_of(description.integrator.strategy));
     a["heuristic"] = std::string(name_of(description.integrator.heuristic));
     a["lightSampling"] = std::string(name_of(description.integrator.light_sampling));

@@ -12,6 +12,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/render/guide_training.h"
 #include "montelux/render/live_film.h"
+#include "montelux/render/merging_passes.h"
 #include "montelux/render/progress_reporter.h"
 #include "montelux/render/round_executor.h"
 #include "montelux/render/sample_allocation.h"
@@ -41,6 +42,9 @@ class RenderLoop {
           order_(renderer.sampler(), renderer.target().slice),
           tile_renderer_(context, renderer.accelerator(), order_), chains_(chains),
           tiles_(tiles_of(state.film.bounds(), tile_size)), finished_(tiles_.size()) {
+        if (context.merges())
+            passes_.emplace(context, renderer.accelerator(), *renderer.description().integrator.merging,
+                            state.film.bounds());
         if (!round_is_done()) { // in a restored state
             round_ = 0;
             progress_.round_begins();
@@ -173,9 +177,26 @@ class RenderLoop {
         if (chains_ != nullptr) return take_groups();
         if (control_.executor != nullptr) return let_executor_take_samples();
         pause_ = false;
+        if (passes_) return take_merging_passes();
+        render_tiles(state_.target_samples);
+    }
+
+    void render_tiles(std::span<const std::uint32_t> target_samples) {
         parallel_for(
             static_cast<std::int64_t>(tiles_.size()),
-            [&](std::int64_t t) { render_tile(static_cast<std::size_t>(t)); }, control_.cancel);
+            [&](std::int64_t t) { render_tile(static_cast<std::size_t>(t), target_samples); },
+            control_.cancel);
+    }
+
+    // Sample by sample: those of one index merge.
+    void take_merging_passes() {
+        std::uint32_t begin = state_.target_samples.front();
+        for (const Pixel& p : state_.film.pixels()) begin = std::min(begin, p.samples());
+        for (std::uint32_t n = begin; n < state_.target_samples.front() && !pause_; ++n) {
+            passes_->prepare(order_.index(n), state_.report, mutex_, control_.cancel);
+            if (cancelled()) return;
+            render_tiles(std::vector<std::uint32_t>(state_.target_samples.size(), n + 1));
+        }
     }
 
     // The splats of a pass become part of its replicates.
@@ -195,6 +216,10 @@ class RenderLoop {
             state_.film.end_replicates(tile);
         });
         splats.clear();
+        if (state_.bias) {
+            std::lock_guard lock(mutex_);
+            close_bias(state_, samples);
+        }
         for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
     }
 
@@ -241,7 +266,7 @@ class RenderLoop {
         for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
     }
 
-    void render_tile(std::size_t index) {
+    void render_tile(std::size_t index, std::span<const std::uint32_t> target_samples) {
         // A tile may have its samples of this round before any are taken: then the round may end in this pause.
         if (pause_) return state_.splats ? void() : report_if_finished(index);
         const PixelBounds& film = state_.film.bounds();
@@ -263,10 +288,11 @@ class RenderLoop {
                  .stride = stride,
                  .buckets = buckets_at(first),
                  .bucket_count = state_.film.buckets_per_pixel(),
-                 .target_samples = &state_.target_samples[first],
+                 .target_samples = &target_samples[first],
                  .target_stride = stride,
                  .layer_sums = state_.film.layer_sums().data() + first * state_.film.layers().sums(),
-                 .splats = state_.splats ? &*state_.splats : nullptr},
+                 .splats = state_.splats ? &*state_.splats : nullptr,
+                 .bias = state_.bias ? &*state_.bias : nullptr},
                 tally, stopped, [&] {
                     pause_if_due();
                     return stopped();
@@ -349,6 +375,7 @@ class RenderLoop {
     StoppingRule stopping_{renderer_.target(), order_.replicate_size()};
     TileRenderer tile_renderer_;
     ChainRenderer* chains_;
+    std::optional<MergingPasses> passes_; // where paths merge
     std::vector<PixelBounds> tiles_;
     std::vector<char> finished_;              // of each tile, in this round
     std::uint64_t round_ = ~std::uint64_t{0}; // incremented to 0 by the first round

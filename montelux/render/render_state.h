@@ -12,6 +12,8 @@
 #include "montelux/render/bad_sample_report.h"
 #include "montelux/render/guide_summary.h"
 #include "montelux/render/integrator_summary.h"
+#include "montelux/render/merging_bias.h"
+#include "montelux/render/merging_summary.h"
 #include "montelux/render/metropolis/chain_statistics.h"
 #include "montelux/transport/guiding/guiding_field.h"
 #include "montelux/transport/ray_tracer.h"
@@ -38,6 +40,7 @@ struct RenderReport {
     RenderStop stop = RenderStop::samples;
     GuideSummary guide;      // of a render that may be guided
     IntegratorChoice choice; // of a render whose integrator was chosen by a pilot
+    MergingSummary merging;
 
     bool cancelled() const { return stop == RenderStop::cancelled; }
 };
@@ -52,6 +55,7 @@ struct RenderState {
     // Of an integrator that traces light, what its paths brought in the open pass over the film: a pass is one replicate
     // of every pixel.
     std::optional<SplatFilm> splats;
+    std::optional<MergingBias> bias{};           // where paths merge
     std::shared_ptr<const GuidingField> guide{}; // that paths follow, or null
 
     explicit RenderState(const FilmSettings& settings) : film(settings) {}
@@ -59,6 +63,7 @@ struct RenderState {
     explicit RenderState(const SceneDescription& description)
         : film(description.film, film_layers_of(description)) {
         if (traces_light(description.integrator.method)) splats.emplace(description.film.crop);
+        if (merges(description.integrator)) bias.emplace(description.film.crop);
     }
 };
 

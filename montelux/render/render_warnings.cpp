@@ -41,6 +41,39 @@ std::string chain_warning(const ChainStatistics& chains) {
            "per pixel make them longer";
 }
 
+std::string merging_notice(const RenderSnapshot& result, const RenderTarget& target) {
+    const MergingSummary& m = result.report.merging;
+    if (!(m.first_radius > 0)) return {};
+    char text[240];
+    std::snprintf(text, sizeof text,
+                  "consistent, not unbiased: light within %.3g to %.3g of a point counts as at it; ",
+                  m.first_radius, m.last_radius);
+    std::string notice = text;
+    const double mean = result.error.mean_luminance;
+    if (m.passes < 2 || !(mean > 0)) {
+        notice += "the bias is not known from one pass";
+    } else {
+        std::snprintf(
+            text, sizeof text,
+            "estimated bias %.2g +- %.1g %% of the picture's mean, %.2g %% (rms) of it over 16 x 16 pixels",
+            100 * m.bias / mean, 100 * m.bias_error / mean, 100 * m.bias_rms / mean);
+        notice += text;
+    }
+    return notice +
+           (target.error > 0 ? "; the target error covers noise alone" : "; the errors cover noise alone");
+}
+
+std::string merging_memory_warning(const MergingSummary& m) {
+    if (m.light_paths >= m.of_paths) return {};
+    char text[200];
+    std::snprintf(text, sizeof text,
+                  "only %llu of %llu light paths of a pass fit into the memory for merging; a larger "
+                  "--merging-memory takes more",
+                  static_cast<unsigned long long>(m.light_paths),
+                  static_cast<unsigned long long>(m.of_paths));
+    return text;
+}
+
 std::string missing_error_warning(const RenderSnapshot& result, const Renderer& renderer) {
     if (renderer.target().slice.count > 1) return {};
     const std::uint64_t points = SampleOrder(renderer.sampler(), renderer.target().slice).replicate_size();

@@ -13,6 +13,12 @@ std::string bad_sample_warning(const BadSampleReport& bad, std::uint64_t seed);
 // Of a Metropolis render whose chains do not agree, or found no light; empty otherwise.
 std::string chain_warning(const ChainStatistics& chains);
 
+// Of a render whose paths merged: that its picture is consistent, not unbiased, and how large the bias is; empty for
+// others.
+std::string merging_notice(const RenderSnapshot& result, const RenderTarget& target);
+// That its light paths did not fit into the memory; empty if they did.
+std::string merging_memory_warning(const MergingSummary& merging);
+
 // For an interrupted render whose picture has no errors; empty if they are known, and for slices, which get
 // errors when they are merged.
 std::string missing_error_warning(const RenderSnapshot& result, const Renderer& renderer);

@@ -57,6 +57,7 @@ void Renderer::render(RenderState& state, const RenderControl& control) const {
                     "only the path integrator can be guided, by a strategy other than 'uniform': leave "
                     "guiding to 'auto' elsewhere, or turn it off");
     if (context.makes_splats() && !state.splats) state.splats.emplace(state.film.bounds());
+    if (context.merges() && !state.bias) state.bias.emplace(state.film.bounds());
     if (state.film.layers().channels() != context.layers().channels())
         throw Error("film", "its layers are not those of the scene's film");
     std::optional<ChainRenderer> chains;

@@ -5,10 +5,15 @@
 #include <type_traits>
 
 #include "montelux/film/splat_film.h"
+#include "montelux/mc/random/hash.h"
+#include "montelux/transport/visible_pixel.h"
 
 namespace montelux {
 
 namespace {
+
+// A pixel of no film: numbers that all samples of a pass share.
+constexpr std::uint32_t pass_pixel = 0xffffffff;
 
 // Scenes without media pay nothing for them.
 Integrator make_integrator(const SceneDescription& description, const IntegratorSettings& settings,
@@ -28,8 +33,9 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
                              const IntegratorSettings& integrator)
     : sampler_(sampler), scene_(scene), camera_(camera), moves_(moves(description.scene)),
       normals_in_camera_space_(description.film.layers.in_camera_space), layers_(description, scene, camera),
-      integrator_(make_integrator(description, integrator, scene, camera)), filter_(description.film.filter),
-      exposure_(description), white_(RgbColorSpace::srgb().illuminant()),
+      integrator_(make_integrator(description, integrator, scene, camera)),
+      merges_(montelux::merges(integrator)), filter_(description.film.filter), exposure_(description),
+      white_(RgbColorSpace::srgb().illuminant()),
       white_scale_(static_cast<float>(1 / integrate_luminance(white_))),
       can_be_guided_((std::holds_alternative<PathIntegrator>(integrator_) ||
                       std::holds_alternative<VolumePathIntegrator>(integrator_)) &&
@@ -42,9 +48,15 @@ PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) c
     SampleStream stream(sampler_, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y),
                         key.index);
     const Vec2f u_film = stream.next_2d();
-    const float u_lambda = stream.next_1d();
+    float u_lambda = stream.next_1d();
     point.lens = camera_.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
-    point.time = moves_ ? camera_.time_at(stream.next_1d()) : 0;
+    float u_time = moves_ ? stream.next_1d() : 0;
+    if (merges_) [[unlikely]] {
+        SampleStream pass(sampler_, pass_pixel, pass_pixel, key.index);
+        u_lambda = pass.next_1d();
+        if (moves_) u_time = pass.next_1d();
+    }
+    point.time = moves_ ? camera_.time_at(u_time) : 0;
     point.filter = filter_.sample(u_film);
     point.film = {static_cast<float>(key.x) + 0.5f + point.filter.offset.x,
                   static_cast<float>(key.y) + 0.5f + point.filter.offset.y};
@@ -124,6 +136,36 @@ void SampleContext::set_guide(std::shared_ptr<const GuidingField> guide) {
     if (auto* path = std::get_if<VolumePathIntegrator>(&integrator_)) path->set_guide(guide_.get());
 }
 
+void SampleContext::set_light_map(std::shared_ptr<const LightMap> map) {
+    light_map_ = std::move(map);
+    if (auto* paths = std::get_if<BidirectionalIntegrator>(&integrator_))
+        paths->set_light_map(light_map_.get());
+}
+
+SampleStream SampleContext::light_stream(const Key& key) const {
+    SamplerSettings settings = sampler_;
+    settings.seed = hash_key(settings.seed, 0x6c69676874); // "light"
+    return SampleStream(settings, static_cast<std::uint32_t>(key.x), static_cast<std::uint32_t>(key.y),
+                        key.index);
+}
+
+void SampleContext::trace_light(RayTracer& tracer, std::span<const Key> keys, LightPaths& paths) const {
+    const auto& integrator = std::get<BidirectionalIntegrator>(integrator_);
+    BidirectionalMemory memory;
+    for (const Key& key : keys) {
+        FilmPoint point;
+        const PathStart<SampleStream> start = begin(key, point);
+        SampleStream numbers = light_stream(key);
+        integrator.trace_light(scene_, tracer, start.camera, numbers, memory, paths);
+    }
+}
+
+std::optional<double> SampleContext::visible_pixel(RayTracer& tracer, const Key& key) const {
+    FilmPoint point;
+    PathStart<SampleStream> start = begin(key, point);
+    return montelux::visible_pixel(scene_, camera_, tracer, start.camera, start.stream);
+}
+
 void SampleContext::begin(std::span<const Key> keys, Batch& batch) const {
     batch.points.resize(keys.size());
     batch.paths.resize(keys.size());
@@ -174,6 +216,11 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
             batch.starts[i].camera.splats = &batch.splats[i];
         }
     }
+    if (merges_) {
+        batch.merging.clear();
+        for (const Key& key : keys) batch.merging.push_back({light_stream(key)});
+        for (std::size_t i = 0; i < keys.size(); ++i) batch.starts[i].camera.merging = &batch.merging[i];
+    }
     trace(tracer, batch);
     if (buckets_) batch.spectral.assign(keys.size(), {});
     for (std::size_t i = 0; i < keys.size(); ++i)
@@ -187,6 +234,11 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
             batch.first_splat.push_back(batch.film_splats.size());
         }
     }
+    if (merges_)
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            if (!results[i].bad)
+                results[i].narrower = exposure_.sensor().to_rgb(
+                    batch.merging[i].narrower * batch.points[i].weight, batch.paths[i].lambda);
     if (!layers_.wants_extras()) return;
     const std::size_t values = layers().values();
     for (std::size_t i = 0; i < keys.size(); ++i)

@@ -19,6 +19,8 @@
 #include "montelux/spectrum/spectrum_table.h"
 #include "montelux/transport/guiding/guiding_trace.h"
 #include "montelux/transport/integrator.h"
+#include "montelux/transport/light_map.h"
+#include "montelux/transport/merging_sample.h"
 
 namespace montelux {
 
@@ -33,6 +35,7 @@ class SampleContext {
         FilmSample film;
         // Why the sample is left out; `film` is then empty.
         std::optional<BadSample::Kind> bad;
+        Vec3f narrower{};  // MergingSample::narrower as linear sRGB
         float clamped = 0; // luminance removed by the film's limit, filter weight applied; of splats, too
         float clamp = 1;   // factor of the film's limit
     };
@@ -66,6 +69,15 @@ class SampleContext {
     bool makes_splats() const { return std::holds_alternative<BidirectionalIntegrator>(integrator_); }
     const PixelFilterSampler& filter() const { return filter_; }
 
+    // Of a render whose paths merge. The samples of one index share wavelengths and time, so that all can merge.
+    bool merges() const { return merges_; }
+    // The light paths of samples, appended.
+    void trace_light(RayTracer& tracer, std::span<const Key> keys, LightPaths& paths) const;
+    // From now on samples merge with it. Not while samples are taken.
+    void set_light_map(std::shared_ptr<const LightMap> map);
+    // visible_pixel() of a sample.
+    std::optional<double> visible_pixel(RayTracer& tracer, const Key& key) const;
+
     // From now on paths follow the guide; null: none does. Not while samples are taken.
     void set_guide(std::shared_ptr<const GuidingField> guide);
     const std::shared_ptr<const GuidingField>& guide() const { return guide_; }
@@ -93,6 +105,7 @@ class SampleContext {
     void trace(RayTracer& tracer, Batch& batch) const;
     void trace_for_guide(RayTracer& tracer, std::span<const Key> keys, Batch& batch) const;
     PathStart<SampleStream> begin(const Key& key, FilmPoint& point) const;
+    SampleStream light_stream(const Key& key) const;
     Result finish(const FilmContribution& path, const SampledWavelengths& lambda, const FilmPoint& point,
                   SpectralSample* spectral, SampleRecord* record = nullptr) const;
     // Appends the splats of a sample to `out`; limits them, and finds out whether they are bad.
@@ -110,6 +123,8 @@ class SampleContext {
     LayerSampler layers_;
     Integrator integrator_;
     std::shared_ptr<const GuidingField> guide_;
+    std::shared_ptr<const LightMap> light_map_;
+    bool merges_;
     PixelFilterSampler filter_;
     FilmExposure exposure_;
     Sensor albedo_sensor_;
@@ -131,6 +146,7 @@ struct SampleContext::Batch {
     // Of integrators that make splats: those of each sample, and in RGB those of all samples, one after the other.
     std::vector<SplatList> splats;
     std::vector<FilmSplat> film_splats;
+    std::vector<MergingSample> merging;
     std::vector<std::size_t> first_splat; // of each sample; at the end the total
     std::span<const FilmSplat> splats_of(std::size_t i) const {
         return std::span(film_splats).subspan(first_splat[i], first_splat[i + 1] - first_splat[i]);

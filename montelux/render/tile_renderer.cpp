@@ -31,7 +31,8 @@ TileRenderer::SampleBatch& TileRenderer::batch_of_this_thread() {
     return batch;
 }
 
-void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally, SplatFilm* splats) const {
+void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally, const TileView& tile) const {
+    SplatFilm* const splats = tile.splats;
     batch.results.resize(batch.keys.size());
     context_.take(tracer, batch.keys, batch.memory, batch.results);
     const FilmLayers& layers = context_.layers();
@@ -50,6 +51,7 @@ void TileRenderer::take(RayTracer& tracer, SampleBatch& batch, TileTally& tally,
             if (splats != nullptr)
                 for (const SampleContext::FilmSplat& s : batch.memory.splats_of(k))
                     splats->add_filtered(context_.filter(), s.film, Vec3d(s.rgb));
+            if (tile.bias != nullptr) tile.bias->add(key.x, key.y, Vec3d(r.narrower));
         }
         if (r.clamped != 0) {
             ++tally.clamped_samples;

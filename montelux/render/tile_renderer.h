@@ -12,6 +12,7 @@
 #include "montelux/film/splat_film.h"
 #include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/render/bad_sample_report.h"
+#include "montelux/render/merging_bias.h"
 #include "montelux/render/render_state.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/render/sample_order.h"
@@ -50,6 +51,7 @@ struct TileView {
     double* layer_sums = nullptr;
     // Of integrators that trace light; null otherwise. Replicates then stay open until the pass ends.
     SplatFilm* splats = nullptr;
+    MergingBias* bias = nullptr; // where paths merge
     // At most this many new samples per pixel.
     std::uint32_t most = ~std::uint32_t{0};
 };
@@ -93,12 +95,12 @@ class TileRenderer {
                 for (std::uint64_t i = pixel.samples(); i < target && !stopped; ++i) {
                     batch.add(pixel, buckets, sums, i, {x, y, order_.index(i)});
                     if (batch.full()) {
-                        take(tracer, batch, tally, tile.splats);
+                        take(tracer, batch, tally, tile);
                         stopped = check();
                     }
                 }
             }
-        if (!stopped && !batch.empty()) take(tracer, batch, tally, tile.splats);
+        if (!stopped && !batch.empty()) take(tracer, batch, tally, tile);
         tally.rays.merge(tracer.statistics);
         tally.cpu_seconds += thread_cpu_seconds() - begin;
     }
@@ -132,7 +134,7 @@ class TileRenderer {
     };
     static SampleBatch& batch_of_this_thread();
 
-    void take(RayTracer& tracer, SampleBatch& batch, TileTally& tally, SplatFilm* splats) const;
+    void take(RayTracer& tracer, SampleBatch& batch, TileTally& tally, const TileView& tile) const;
 
     const SampleContext& context_;
     const Accelerator& accelerator_;

@@ -66,6 +66,13 @@ struct OcclusionSettings {
     float max_distance = std::numeric_limits<float>::infinity();
 };
 
+// Vertex merging (transport/light_map.h): light paths of a pass end at all points of camera paths that are near them.
+// The picture is then consistent, not unbiased.
+struct MergingSettings {
+    float radius = 0; // of the first pass, in units of the scene; 0: chosen by the size of pixels there
+    std::size_t memory = 192; // MiB that the light paths of a pass may take
+};
+
 struct IntegratorSettings {
     IntegratorKind method = IntegratorKind::path;
     int max_depth = 5; // scattering events of a path
@@ -82,6 +89,7 @@ struct IntegratorSettings {
     bool regularize = false;
     Guiding guiding = Guiding::off;
     std::size_t guiding_memory = 256;             // MiB at most, while a guide is trained
+    std::optional<MergingSettings> merging{};     // of bidirectional
     std::optional<OcclusionSettings> occlusion{}; // the other settings then have no effect
     EnvironmentSampling environment_sampling = EnvironmentSampling::automatic;
     // MIS compensation; effective only with mis and its terms.
@@ -103,6 +111,10 @@ struct IntegratorSettings {
     }
     SurfaceSettings surfaces() const { return {microfacet_scattering, shading_terminator}; }
 };
+
+inline bool merges(const IntegratorSettings& s) {
+    return s.method == IntegratorKind::bidirectional && s.merging.has_value();
+}
 
 struct SceneDescription {
     Scene scene;

@@ -23,5 +23,7 @@ template void BidirectionalIntegrator::estimate(const SceneView&, RayTracer&,
 template FilmContribution BidirectionalIntegrator::estimate(const SceneView&, RayTracer&, const CameraSample&,
                                                             SampleStream&, BidirectionalMemory&,
                                                             const PathObserver*) const;
+template void BidirectionalIntegrator::trace_light(const SceneView&, RayTracer&, const CameraSample&,
+                                                   SampleStream&, BidirectionalMemory&, LightPaths&) const;
 
 } // namespace montelux

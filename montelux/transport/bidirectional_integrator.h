@@ -8,6 +8,8 @@
 #include "montelux/scene/render_settings.h"
 #include "montelux/transport/integrator_model.h"
 #include "montelux/transport/light_end.h"
+#include "montelux/transport/light_map.h"
+#include "montelux/transport/merging_sample.h"
 #include "montelux/transport/splat.h"
 #include "montelux/transport/strategy_weight.h"
 #include "montelux/transport/subpath.h"
@@ -16,6 +18,7 @@
 namespace montelux {
 
 // A path that a strategy found, for tests: its first s vertices are of the light's side, the other t of the camera's.
+// Of a merged path (s + t vertices, merged at v_s) the light's vertices are those of a LightMap.
 struct FoundPath {
     std::size_t s = 0, t = 0;
     const LightEnd& end;                   // v_0
@@ -24,7 +27,8 @@ struct FoundPath {
     Point3f lens;                          // v_{n-1}
     const PathDensities& densities;
     double weight = 0;
-    SampledSpectrum value; // unweighted
+    SampledSpectrum value;                  // unweighted
+    const LightMapVertex* merged = nullptr; // at v_s, if that is merged
 };
 struct PathObserver {
     void (*found)(void* self, const FoundPath& path);
@@ -61,6 +65,13 @@ struct BidirectionalMemory {
 // IntegratorKind::light_tracing takes the strategies t = 1 alone, and s = 0 for lights that the camera sees directly.
 // It finds no light on its way from a mirror or smooth glass straight to the camera.
 //
+// Merging (vertex connection and merging: Georgiev et al. 2012; Hachisuka, Pantaleoni, Jensen 2012): each vertex of the
+// camera's path on a surface is also joined to the vertices of a LightMap within its radius r, as if they were the same
+// point. The light that the N paths of the map bring to the disc, over its area pi r^2, is an estimate of the
+// irradiance: it is that of the disc's mean rather than of the point, which is the bias; it vanishes with r. These are
+// the strategies n + i of PathDensities, for v_i with i >= 2 on surfaces that scatter there by no delta: light straight
+// from a lamp is left to the other strategies. Vertices in media do not merge.
+//
 // For scenes and cameras without light_tracing_obstacle().
 class BidirectionalIntegrator {
   public:
@@ -79,6 +90,12 @@ class BidirectionalIntegrator {
     template <RandomStream Stream>
     void estimate(const SceneView& scene, RayTracer& tracer, std::span<PathStart<Stream>> starts,
                   Batch& memory, std::span<FilmContribution> results) const;
+    // From now on samples, which then have CameraSample::merging, merge with it; null: none does.
+    void set_light_map(const LightMap* map) { map_ = map; }
+    // Traces the light's path of a sample, the same as estimate() does, and appends it.
+    template <RandomStream Stream>
+    void trace_light(const SceneView& scene, RayTracer& tracer, const CameraSample& camera, Stream& stream,
+                     Batch& memory, LightPaths& paths) const;
     // Of one sample; `observer`, unless null, sees each path found.
     template <RandomStream Stream>
     FilmContribution estimate(const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
@@ -89,6 +106,8 @@ class BidirectionalIntegrator {
     friend class BidirectionalSample;
     template <RandomStream Stream>
     friend class BidirectionalStrategies;
+    template <RandomStream Stream>
+    friend class BidirectionalMerging;
 
     bool on_film(Point2f p) const {
         return p.x >= window_min_.x && p.x < window_max_.x && p.y >= window_min_.y && p.y < window_max_.y;
@@ -100,6 +119,7 @@ class BidirectionalIntegrator {
     Vec2f window_min_, window_max_; // film points that some pixel's filter reaches
     double light_paths_;
     bool volumes_;
+    const LightMap* map_ = nullptr;
 };
 
 } // namespace montelux

@@ -4,32 +4,34 @@
 #include <limits>
 #include <optional>
 
-#include "montelux/transport/bidirectional_strategies.h"
+#include "montelux/transport/bidirectional_merging.h"
 #include "montelux/transport/subpath_walk.h"
 
 namespace montelux {
 
 // Numbers are drawn in this order: the camera's path with next-event estimation at each vertex, the light's path, then
-// what joining them takes.
+// what joining them takes. Of a sample that merges, the light's path has a stream of its own.
 template <RandomStream Stream>
-class BidirectionalSample : private BidirectionalStrategies<Stream> {
+class BidirectionalSample : private BidirectionalMerging<Stream> {
   public:
     BidirectionalSample(const BidirectionalIntegrator& integrator, const SceneView& scene, RayTracer& tracer,
                         const CameraSample& camera, Stream& stream, BidirectionalMemory& memory,
                         const PathObserver* observer)
-        : BidirectionalStrategies<Stream>(integrator, scene, tracer, camera, stream, memory, observer) {
+        : BidirectionalMerging<Stream>(integrator, scene, tracer, camera, stream, memory, observer) {
         memory_.camera.clear();
         memory_.light.clear();
         memory_.ignored.clear();
     }
 
     FilmContribution take() {
-        const std::size_t usual =
-            static_cast<std::size_t>(std::min<std::int64_t>(settings_.max_depth, 64)) + 1;
-        memory_.camera.reserve(usual);
-        memory_.light.reserve(usual);
+        reserve();
         trace_from_camera();
-        trace_from_light();
+        if (camera_.merging != nullptr) {
+            SampleStream numbers = camera_.merging->light;
+            trace_from_light(numbers);
+        } else {
+            trace_from_light(stream_);
+        }
         for (std::size_t j = 1; j <= memory_.light.size(); ++j) {
             join_lens(j);
             if (!all_strategies_) continue;
@@ -37,12 +39,23 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
                 if (memory_.light[j - 1].events + memory_.camera[k - 1].events <= settings_.max_depth)
                     join(j, k);
         }
+        if (area_paths_ > 0 && camera_.merging != nullptr)
+            for (std::size_t k = 1; k <= memory_.camera.size(); ++k)
+                this->merge(k, camera_.merging->narrower);
         return {radiance_, camera_.lambda, first_, transparency_};
     }
 
+    // The light's path alone.
+    void store(LightPaths& paths) {
+        reserve();
+        trace_from_light(stream_);
+        this->store_light_path(paths);
+    }
+
   private:
-    using Strategies = BidirectionalStrategies<Stream>;
+    using Strategies = BidirectionalMerging<Stream>;
     using Strategies::all_strategies_;
+    using Strategies::area_paths_;
     using Strategies::camera_;
     using Strategies::density_of_previous;
     using Strategies::end_;
@@ -95,6 +108,12 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
         void emitted(const SubpathEnd&, SampledSpectrum) {}
         void looped() { sample.report_loop(); }
     };
+    void reserve() {
+        const std::size_t usual =
+            static_cast<std::size_t>(std::min<std::int64_t>(settings_.max_depth, 64)) + 1;
+        memory_.camera.reserve(usual);
+        memory_.light.reserve(usual);
+    }
     void report_loop() { radiance_ += SampledSpectrum(std::numeric_limits<float>::quiet_NaN()); }
 
     // Of v, whose ray has just arrived; false where nothing scatters.
@@ -104,10 +123,11 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
     }
 
     // Goes on from the last vertex of a subpath. False if that ends there.
-    bool scatter(Vertices& path, TransportMode mode, SubpathEnd& end) {
+    template <RandomStream Numbers>
+    bool scatter(Vertices& path, TransportMode mode, SubpathEnd& end, Numbers& numbers) {
         SubpathVertex& v = path.back();
         if (v.phase != nullptr) {
-            const Vec2f u = stream_.next_2d();
+            const Vec2f u = numbers.next_2d();
             const PhaseSample s =
                 std::visit([&](const PhaseModel auto& f) { return f.sample(v.wo, u); }, *v.phase);
             // Phase functions are symmetric.
@@ -118,7 +138,7 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
             return true;
         }
         const std::optional<BsdfSample> scattered = std::visit(
-            [&](const BsdfModel auto& bsdf) { return bsdf.sample(v.wo, mode, stream_); }, v.surface.bsdf);
+            [&](const BsdfModel auto& bsdf) { return bsdf.sample(v.wo, mode, numbers); }, v.surface.bsdf);
         if (!scattered) return false;
         end.throughput *= scattered->weight;
         if (mode == TransportMode::importance)
@@ -128,7 +148,7 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
         v.delta = scattered->specular;
         if (may_pass() && v.delta && scattered->transmission && scattered->eta == 1) --end.events;
         // Backwards: the vertex before is found from the one to come.
-        const float back = v.delta ? 1 : v.evaluate(scattered->wi, v.wo, adjoint(mode), stream_).pdf;
+        const float back = v.delta ? 1 : v.evaluate(scattered->wi, v.wo, adjoint(mode), numbers).pdf;
         v.backward = density_of_previous(path, path.size(), mode, back);
         const Vec3f wi = v.surface.frame.to_world(scattered->wi);
         end.medium = v.medium_towards(wi);
@@ -142,14 +162,15 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
     bool may_pass() const { return volumes_ && !settings_.count_passages; }
 
     // Russian roulette as of PathIntegrator, by the share that is left of what set out.
-    bool survives(SubpathEnd& end, float strength) {
+    template <RandomStream Numbers>
+    bool survives(SubpathEnd& end, float strength, Numbers& numbers) {
         if (!(strength > 0)) {
             // A NaN throughput must not end silently: it makes the sample bad.
             if (!is_black(end.throughput)) radiance_ += end.throughput;
             return false;
         }
         if (!(strength < 1) || end.events <= 1) return true;
-        if (!(stream_.next_1d() < strength)) return false;
+        if (!(numbers.next_1d() < strength)) return false;
         end.throughput /= strength;
         return true;
     }
@@ -180,8 +201,9 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
                           .found = true};
             if (!all_strategies_) return;
             if (v.connectible && !last) sample_light(k);
-            if (!scatter(memory_.camera, TransportMode::radiance, end) || end.events > settings_.max_depth ||
-                !survives(end, max_value(end.carried()) * end.eta_scale))
+            if (!scatter(memory_.camera, TransportMode::radiance, end, stream_) ||
+                end.events > settings_.max_depth ||
+                !survives(end, max_value(end.carried()) * end.eta_scale, stream_))
                 return;
         }
     }
@@ -205,11 +227,12 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
             meet_light(light, {.wi = end.ray.d}, end.edge, end.throughput, end.lambda, k, end.pdf);
     }
 
-    void trace_from_light() {
+    template <RandomStream Numbers>
+    void trace_from_light(Numbers& numbers) {
         if (scene_.emitting_lights->size() == 0) return;
-        const float u_choice = stream_.next_1d();
-        const LightChoice chosen = scene_.emitting_lights->sample({}, stream_.refined(u_choice));
-        const Vec2f u_position = stream_.next_2d(), u_direction = stream_.next_2d();
+        const float u_choice = numbers.next_1d();
+        const LightChoice chosen = scene_.emitting_lights->sample({}, numbers.refined(u_choice));
+        const Vec2f u_position = numbers.next_2d(), u_direction = numbers.next_2d();
         SubpathEnd end;
         end.lambda = camera_.lambda;
         const std::optional<EmissionSample> sample =
@@ -228,11 +251,11 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
         end.throughput =
             sample->radiance *
             (sample->cosine / (chosen.probability * sample->pdf_position * sample->pdf_direction));
-        if (volumes_ && !enter_medium(end)) return;
+        if (volumes_ && !enter_medium(end, numbers)) return;
         const float all = max_value(end.carried());
         LightEvents events{*this};
         for (std::size_t j = 1; j <= most_interfaces && end.events < settings_.max_depth; ++j) {
-            SubpathVertex* found = walk_to_vertex(memory_.light, scene_, tracer_, end, stream_, events);
+            SubpathVertex* found = walk_to_vertex(memory_.light, scene_, tracer_, end, numbers, events);
             if (found == nullptr) return;
             SubpathVertex& v = *found;
             v.forward = j == 1 ? end_.edge_density(v.cosine(v.w), v.distance2)
@@ -242,20 +265,21 @@ class BidirectionalSample : private BidirectionalStrategies<Stream> {
                 end_next_event_ =
                     next_event_density(scene_, time_, end_, v.reference(v.wo), v.w, v.distance2);
             if (v.events == settings_.max_depth && !may_pass()) return;
-            if (!scatter(memory_.light, TransportMode::importance, end) ||
-                !survives(end, max_value(end.carried()) / all))
+            if (!scatter(memory_.light, TransportMode::importance, end, numbers) ||
+                !survives(end, max_value(end.carried()) / all, numbers))
                 return;
         }
     }
 
     // The light's ray starts in a medium. Light at infinity has passed that around the scene: an unbounded one lets
     // nothing through, bounded ones lie beyond the ray's origin. False if nothing arrives.
-    bool enter_medium(SubpathEnd& end) {
+    template <RandomStream Numbers>
+    bool enter_medium(SubpathEnd& end, Numbers& numbers) {
         end.medium = medium_at_light(scene_, tracer_, end.ray, camera_.ray);
         if (!end_.at_infinity() || end.medium == no_index) return true;
         Ray back{end.ray.o, -end.ray.d};
         back.time = time_;
-        const auto through = shadow_transmittance(scene_, tracer_, back, end.medium, end.lambda, stream_);
+        const auto through = shadow_transmittance(scene_, tracer_, back, end.medium, end.lambda, numbers);
         if (!through || !(through->t[0] > 0)) return false;
         end.throughput *= through->t;
         end.density *= through->r_u;
@@ -272,6 +296,13 @@ FilmContribution BidirectionalIntegrator::estimate(const SceneView& scene, RayTr
                                                    const CameraSample& camera, Stream& stream, Batch& memory,
                                                    const PathObserver* observer) const {
     return BidirectionalSample<Stream>(*this, scene, tracer, camera, stream, memory, observer).take();
+}
+
+template <RandomStream Stream>
+void BidirectionalIntegrator::trace_light(const SceneView& scene, RayTracer& tracer,
+                                          const CameraSample& camera, Stream& stream, Batch& memory,
+                                          LightPaths& paths) const {
+    BidirectionalSample<Stream>(*this, scene, tracer, camera, stream, memory, nullptr).store(paths);
 }
 
 template <RandomStream Stream>

@@ -23,7 +23,8 @@ class BidirectionalStrategies {
         : integrator_(integrator), settings_(integrator.settings_), scene_(scene), tracer_(tracer),
           camera_(camera), stream_(stream), memory_(memory), observer_(observer),
           splats_(camera.splats != nullptr ? *camera.splats : memory.ignored), time_(camera.ray.time),
-          all_strategies_(settings_.method == IntegratorKind::bidirectional), volumes_(integrator.volumes_) {}
+          all_strategies_(settings_.method == IntegratorKind::bidirectional), volumes_(integrator.volumes_),
+          area_paths_(integrator.map_ != nullptr ? integrator.map_->area_paths() : 0) {}
 
     // Of the vertex before number i (from 1), given a density per solid angle at that.
     float density_of_previous(const Vertices& path, std::size_t i, TransportMode mode, float pdf) const {
@@ -164,10 +165,35 @@ class BidirectionalStrategies {
     float time_;
     bool all_strategies_;
     bool volumes_;             // the scene has media or interfaces
+    double area_paths_;        // LightMap::area_paths; 0 without merging
     LightEnd end_;             // of the light's path
     float end_next_event_ = 0; // PathDensities::next_event of it
     Point3f lens_;             // of the last splat
     SampledSpectrum radiance_{};
+
+    // What the camera's subpath knows of the densities of a path of n vertices: of those before its vertex v_first.
+    void fill_camera_side(std::size_t n, std::size_t first) {
+        PathDensities& d = memory_.densities;
+        for (std::size_t k = 1; k + first < n; ++k) {
+            const SubpathVertex& z = memory_.camera[k - 1];
+            const std::size_t i = n - 1 - k;
+            d.from_camera[i] = double(z.forward);
+            d.delta[i] = z.delta ? 1 : 0;
+            if (area_paths_ > 0) d.merging[i] = area_paths_at(i, z.phase != nullptr);
+            if (k > 1) d.from_light[i + 1] = double(z.backward);
+            if (volumes_) memory_.edges[i] = z.edge;
+        }
+        d.light_paths = integrator_.light_paths_;
+    }
+    void reset_densities(std::size_t n) {
+        memory_.densities.reset(n);
+        if (volumes_) memory_.edges.resize(n - 1);
+        if (area_paths_ > 0) memory_.densities.merging.assign(n - 1, 0);
+    }
+    // PathDensities::merging of v_i.
+    double area_paths_at(std::size_t i, bool in_medium) const {
+        return i >= 2 && !in_medium ? area_paths_ : 0;
+    }
 
   private:
     void set_before_light_vertex(std::size_t j, float pdf) {
@@ -179,8 +205,7 @@ class BidirectionalStrategies {
     void fill(std::size_t s, std::size_t t) {
         const std::size_t n = s + t;
         PathDensities& d = memory_.densities;
-        d.reset(n);
-        if (volumes_) memory_.edges.resize(n - 1);
+        reset_densities(n);
         if (s >= 2) {
             d.from_light[0] = double(end_.emission);
             d.next_event = double(end_next_event_);
@@ -189,18 +214,11 @@ class BidirectionalStrategies {
             const SubpathVertex& y = memory_.light[j - 1];
             d.from_light[j] = double(y.forward);
             d.delta[j] = y.delta ? 1 : 0;
+            if (area_paths_ > 0) d.merging[j] = area_paths_at(j, y.phase != nullptr);
             if (j > 1 || !end_.invisible) d.from_camera[j - 1] = double(y.backward);
             if (volumes_) memory_.edges[j - 1] = y.edge;
         }
-        for (std::size_t k = 1; k + std::max<std::size_t>(s, 1) < n; ++k) {
-            const SubpathVertex& z = memory_.camera[k - 1];
-            const std::size_t i = n - 1 - k;
-            d.from_camera[i] = double(z.forward);
-            d.delta[i] = z.delta ? 1 : 0;
-            if (k > 1) d.from_light[i + 1] = double(z.backward);
-            if (volumes_) memory_.edges[i] = z.edge;
-        }
-        d.light_paths = integrator_.light_paths_;
+        fill_camera_side(n, std::max<std::size_t>(s, 1));
     }
 
     // Along a ray from a vertex, in direction w. Empty if it is blocked.

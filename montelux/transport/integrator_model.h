@@ -17,14 +17,16 @@ namespace montelux {
 
 struct PathRecord;
 class GuidingTrace;
+struct MergingSample;
 
 struct CameraSample {
     Ray ray;
     SampledWavelengths lambda;
-    SampleExtras* extras = nullptr; // null: not wanted
-    GuidingTrace* trace = nullptr;  // null: no guide learns from the path
-    float expected = 0;             // GuidingField::expected
-    SplatList* splats = nullptr;    // gets those of the sample; null: not wanted
+    SampleExtras* extras = nullptr;   // null: not wanted
+    GuidingTrace* trace = nullptr;    // null: no guide learns from the path
+    float expected = 0;               // GuidingField::expected
+    SplatList* splats = nullptr;      // gets those of the sample; null: not wanted
+    MergingSample* merging = nullptr; // of a sample whose path merges with others
 };
 
 // A sample before its path: the stream has given the camera's numbers.

@@ -15,6 +15,10 @@ namespace montelux {
 //   s = 1      the camera's path, with next-event estimation at v_1, which has a density of its own
 //   s >= 2     emission from v_0, joined to the camera's path between v_{s-1} and v_s
 //   s = n - 1  ... joined to the lens; `light_paths` light paths for each that starts at a square pixel
+//   s = n + i  merged at v_i: the light's path and the camera's path both reach v_i (Georgiev et al. 2012, "Light
+//              Transport Simulation with Vertex Connection and Merging"). The density is that of strategy i with v_1 to
+//              v_{i-1} (and v_0, by emission) of the light's side, times the probability that one of N light paths ends
+//              within the radius r around v_i: about from_light[i] pi r^2 N.
 //
 // All are per area at vertices on surfaces, per volume at those in media, or per solid angle for v_0 at infinity; a
 // density of a Dirac delta counts as 1, times the change from solid angle to area. So they are functions of the path alone, whatever strategy found it, and
@@ -27,7 +31,9 @@ struct PathDensities {
     std::vector<char> delta;         // v_i scatters by a Dirac delta
     double next_event = 0;           // of v_0, for s = 1
     double light_paths = 1;
-    std::vector<double> media; // media_factors of each s (edge_density.h); empty without media
+    std::vector<double> media; // media_factors of each s < n (edge_density.h); empty without media
+    // pi r^2 N at v_i; 0 where no strategy merges. Empty without merging.
+    std::vector<double> merging;
 
     // The elements of the vectors are those of v_0 to v_{n-2}; no memory is allocated up to the greatest n so far.
     void reset(std::size_t n) {
@@ -35,12 +41,13 @@ struct PathDensities {
         from_camera.assign(n - 1, 0);
         delta.assign(n - 1, 0);
         media.clear();
+        merging.clear();
         next_event = 0;
     }
     std::size_t vertices() const { return from_light.size() + 1; }
 };
 
-// The weight of strategy s by the heuristic, in [0, 1]; `scratch` is memory. Paths of two vertices are found by s = 0
+// The weight of strategy s < 2 n - 1 by the heuristic, in [0, 1]; `scratch` is memory. Paths of two vertices are found by s = 0
 // alone.
 double strategy_weight(const PathDensities& path, std::size_t s, Heuristic heuristic,
                        std::vector<double>& scratch);

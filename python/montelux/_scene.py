@@ -270,6 +270,7 @@ VALUES = (
     _core.LanczosFilter,
     _core.Sampler,
     _core.Integrator,
+    _core.Merging,
     _core.Occlusion,
 )
 for _kind in VALUES:

@@ -71,6 +71,9 @@ inline SpectralSettings& element(SceneDescription& d, Index, std::type_identity<
 inline OcclusionSettings& element(SceneDescription& d, Index, std::type_identity<OcclusionSettings>) {
     return present(d.integrator.occlusion, "Integrator.occlusion");
 }
+inline MergingSettings& element(SceneDescription& d, Index, std::type_identity<MergingSettings>) {
+    return present(d.integrator.merging, "Integrator.merging");
+}
 
 // A value in a scene, a detached one, which has its own spectra, or a part of a detached one.
 template <typename V>

@@ -219,6 +219,24 @@ void bind_occlusion(nb::module_& m) {
         "Shapes farther away hide nothing; infinite: all hide.");
 }
 
+void bind_merging(nb::module_& m) {
+    auto c = value_class<MergingSettings>(
+        m, "Merging",
+        "Camera paths also end at the light paths that pass near them, which finds caustics in mirrors and "
+        "under "
+        "water. The picture is consistent, not unbiased: its errors cover noise alone.");
+    number(
+        c, "radius", &MergingSettings::radius, [](double x) { return x >= 0 && x < 1e30; },
+        "a number from 0 on, in units of the scene",
+        "How near, in the first pass; later ones come closer. 0: chosen by the size of a pixel.");
+    attribute<MergingSettings>(
+        c, "memory", "int", [](const MergingSettings& s, const auto&) { return nb::cast(s.memory); },
+        [](MergingSettings& s, nb::handle v, auto&, const std::string& what) {
+            s.memory = static_cast<std::size_t>(whole_number_of(v, 1, 1 << 20, what));
+        },
+        "MiB that the light paths of a pass may take; where it is too little, fewer of them merge.");
+}
+
 } // namespace
 
 void bind_views(nb::module_& m) {
@@ -278,6 +296,7 @@ void bind_views(nb::module_& m) {
         },
         "Samples per pixel, unless render() is given a number.");
     bind_occlusion(m);
+    bind_merging(m);
     auto integrator = value_class<IntegratorSettings>(m, "Integrator", "How light is followed.");
     attribute<IntegratorSettings>(
         integrator, "max_depth", "int",
@@ -325,6 +344,9 @@ void bind_views(nb::module_& m) {
          "Where lights are sampled: in media lamps are also looked for from points of the ray "
          "close to "
          "them.");
+    optional_part(
+        integrator, "merging", &IntegratorSettings::merging, "Merging",
+        "Of 'bidirectional': vertices of camera paths merge with those of light paths. None: they do not.");
     optional_part(
         integrator, "occlusion", &IntegratorSettings::occlusion, "Occlusion",
         "Ambient occlusion instead of light; the other attributes then have no effect. None: light.");

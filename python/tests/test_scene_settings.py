@@ -131,6 +131,21 @@ def test_ambient_occlusion(scene):
     assert montelux.Integrator(occlusion=montelux.Occlusion()).occlusion.max_distance == float("inf")
 
 
+def test_merging(scene):
+    integrator = scene.integrator
+    assert integrator.merging is None
+    integrator.method = "bidirectional"
+    unmerged = scene.render().mean
+    integrator.merging = montelux.Merging(radius=0.2, memory=16)
+    assert repr(integrator.merging).startswith("Merging(radius=0.2")
+    assert not np.array_equal(scene.render().mean, unmerged)
+    integrator.method = "path"
+    with pytest.raises(montelux.Error, match="only the integrator 'bidirectional' merges"):
+        scene.render()
+    with pytest.raises(montelux.Error, match="a number from 0 on"):
+        integrator.merging.radius = -1
+
+
 @pytest.mark.parametrize(
     "change, sentence",
     [

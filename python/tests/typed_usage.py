@@ -134,6 +134,7 @@ def values() -> tuple[object, ...]:
         montelux.DistantLight(),
         montelux.PointLight(),
         montelux.SpotLight(),
+        montelux.Merging(radius=0.1),
         montelux.Occlusion(max_distance=2),
         montelux.Spectral(buckets=4),
         montelux.BoxFilter(),

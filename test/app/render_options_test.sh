@@ -32,6 +32,9 @@ done
 expect 2 "path, bidirectional, light-tracing, metropolis, auto is expected" render ok.pbrt --integrator bdpt
 expect 1 "leave out --adaptive or choose 'path'" render ok.pbrt --integrator bidirectional --adaptive on
 expect 1 "cannot be replayed" render ok.pbrt --integrator bidirectional --debug-sample 0,0,0
+expect 2 "--merging: '0' was given; off, auto or a radius above 0" render ok.pbrt --integrator bidirectional --merging 0
+expect 2 "expected --merging auto or a radius" render ok.pbrt --integrator bidirectional --merging-memory 64
+expect 1 "only the integrator 'bidirectional' merges paths, not 'path'" render ok.pbrt --merging auto
 expect 2 "mis, mis-bsdf, mis-light is expected" render ok.pbrt --strategy mis_bsdf
 expect 1 "GiB of memory; this machine has" render ok.pbrt --resolution 65536x65536
 [ -e ok.exr ] && fail "a picture was written in spite of an error"

@@ -235,10 +235,10 @@ TEST(Vegas, ConstantsAreExactAndZerosHaveNoKnownError) {
 
 TEST(Vegas, InfiniteRangesAndManyDimensions) {
     const Integrand normal = [](double x) { return std::exp(-0.5 * x * x); };
-    const double infinity = std::numeric_limits<double>::infinity();
+    const double unbounded = std::numeric_limits<double>::infinity();
     for (const Form& form : forms) {
         const auto r =
-            integrate(normal, Domain::interval(-infinity, infinity), form.settings, {.relative_error = 1e-4});
+            integrate(normal, Domain::interval(-unbounded, unbounded), form.settings, {.relative_error = 1e-4});
         EXPECT_NEAR(r.value[0], std::sqrt(2 * pi), 6e-4 * std::sqrt(2 * pi)) << form.name;
         const Integrand sum = [](Point x) { return std::accumulate(x.begin(), x.end(), 0.0); };
         const auto wide = integrate(sum, Domain::unit_cube(100), form.settings, {.evaluations = 20000});
