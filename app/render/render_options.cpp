@@ -205,8 +205,8 @@ void declare(CLI::App& c, RenderOptions& o) {
         "Of bidirectional: camera paths also end at the light paths that pass within RADIUS (units of the "
         "scene), which finds caustics in mirrors and under water. Discs shrink from pass to pass: the "
         "picture "
-        "is consistent, not unbiased, and its errors cover noise alone; --stats estimates the bias. auto: by "
-        "the size of a pixel. Default: off");
+        "is consistent, not unbiased, and its errors cover noise alone; its last line estimates the bias. "
+        "auto: by the size of a pixel. Default: off");
     add_whole_number(
         c, "--merging-memory", o.merging_memory, 1, 1u << 20,
         "MiB that the light paths of a pass may take; where it is too little, fewer of them merge. "

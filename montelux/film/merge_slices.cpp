@@ -227,7 +227,9 @@ MergedSlices SliceMerger::finish() const {
     Attributes& a = out.attributes();
     a = attributes_;
     // Of one slice alone.
-    for (const char* key : {"stoppedBy", "denoiser", "denoiserGuides"}) a.erase(key);
+    for (const char* key : {"stoppedBy", "denoiser", "denoiserGuides", "mergingLastRadius", "mergingBias",
+                            "mergingBiasError", "mergingBiasRms"})
+        a.erase(key);
     a["slice"] =
         result.missing.empty() ? std::string("1/1") : std::string("some of ") + std::to_string(count_);
     a["samplesTaken"] = static_cast<float>(result.mean_samples);

@@ -91,9 +91,13 @@ class Choice {
         if (target.slice.count > 1)
             throw Error("integrator auto",
                         "all slices of a picture must be rendered by the same integrator; choose one");
+        if (description_.integrator.merging)
+            throw Error("integrator auto",
+                        "does not consider merging, whose bias no error bar contains; choose "
+                        "the integrator 'bidirectional', or leave merging out");
         find_candidates();
-        prepare();
         try {
+            prepare();
             if (!take_pilots()) return abandon();
         } catch (...) {
             abandon();
@@ -151,7 +155,7 @@ class Choice {
         const std::size_t tiles = std::min({tiles_.size(), most_tiles, static_cast<std::size_t>(affordable)});
         if (possible_[bidirectional] && tiles >= std::min(fewest_tiles, tiles_.size())) {
             if (tiles > count && !pilots_[path]->take_tiles(tiles, settings_.cancel)) return false;
-            count = std::max(count, tiles);
+            count = tiles;
             begin(bidirectional);
             if (!pilots_[bidirectional]->take_tiles(count, settings_.cancel)) return false;
             measure(count);
@@ -198,6 +202,10 @@ class Choice {
             if (pilots_[i] && !pilots_[i]->picture().parts.empty()) {
                 measured.push_back(i);
                 pictures.push_back(pilots_[i]->picture());
+                for (PilotPart& part : pictures.back().parts) {
+                    part.first.resize(end);
+                    part.second.resize(end);
+                }
             }
         const RenderTarget target = settings_.target(IntegratorKind::path);
         const std::vector<double> of_picture = relative_variances(pictures, ends, PilotMeasure::picture);

@@ -25,7 +25,8 @@ std::string choice_text(const IntegratorChoice& choice) {
     for (const IntegratorChoice::Candidate& c : choice.candidates) {
         has_light = has_light || c.effort > 0;
         const std::string name(name_of(c.kind));
-        if (c.outcome == CandidateOutcome::unaffordable) untried += (untried.empty() ? "" : " and ") + name;
+        if (c.outcome == CandidateOutcome::unaffordable && c.kind != choice.chosen)
+            untried += (untried.empty() ? "" : " and ") + name;
         if (c.outcome != CandidateOutcome::measured || c.kind == choice.chosen) continue;
         const double ratio = choice.time_ratio(c);
         if (!(ratio > 0)) continue;

@@ -1,7 +1,7 @@
 #include "montelux/render/integrator_pilot.h"
 
 #include <mutex>
-#include <optional>
+#include <utility>
 
 #include "montelux/render/metropolis/chain_renderer.h"
 #include "montelux/render/tile_renderer.h"
@@ -28,32 +28,18 @@ void for_each_pixel(std::span<const PixelBounds> tiles, const Visit& visit) {
             for (int x = tile.x0; x < tile.x1; ++x) visit(x, y);
 }
 
-// Appends what each pixel's mean became: that after the first sample, and that of the second one alone.
-class PixelMeans {
-  public:
-    explicit PixelMeans(std::span<const PixelBounds> tiles) : tiles_(tiles) {}
-    void after_first(const Film& film) {
-        for_each_pixel(tiles_, [&](int x, int y) { first_.push_back(mean_luminance(film.pixel(x, y))); });
-    }
-    void after_second(const Film& film, PilotPart& part) const {
-        std::size_t i = 0;
-        for_each_pixel(tiles_, [&](int x, int y) {
-            const double both = mean_luminance(film.pixel(x, y));
-            part.first.push_back(static_cast<float>(first_[i]));
-            part.second.push_back(static_cast<float>(2 * both - first_[i]));
-            ++i;
-        });
-    }
+// Appends the means of the pixels.
+void append_means(const Film& film, std::span<const PixelBounds> tiles, std::vector<float>& to) {
+    for_each_pixel(tiles,
+                   [&](int x, int y) { to.push_back(static_cast<float>(mean_luminance(film.pixel(x, y)))); });
+}
 
-  private:
-    std::span<const PixelBounds> tiles_;
-    std::vector<double> first_;
-};
-
-std::vector<double> splat_luminances(const SplatFilm& splats, std::span<const PixelBounds> tiles) {
-    std::vector<double> sums;
-    for_each_pixel(tiles, [&](int x, int y) { sums.push_back(luminance(splats.sum(x, y))); });
-    return sums;
+// Appends the splats in the pixels, per sample.
+void append_splats(const SplatFilm& splats, std::span<const PixelBounds> tiles, double samples,
+                   std::vector<float>& to) {
+    for_each_pixel(tiles, [&](int x, int y) {
+        to.push_back(static_cast<float>(luminance(splats.sum(x, y)) / samples));
+    });
 }
 
 } // namespace
@@ -69,23 +55,23 @@ void IntegratorPilot::count(const RenderReport& before, const RenderReport& afte
     cpu_seconds_ += after.cpu_seconds - before.cpu_seconds;
 }
 
-bool IntegratorPilot::sweep(const SampleTakers& takers, RenderState& state, std::size_t first,
-                            std::size_t end, std::uint32_t target, const CancelFlag* cancel) {
+bool IntegratorPilot::sweep(const TileRenderer& renderer, RenderState& state, std::size_t end,
+                            const CancelFlag* cancel) {
     const RenderReport before = state.report;
     const PixelBounds& film = state.film.bounds();
     const auto stride = static_cast<std::size_t>(film.width());
-    const std::vector<std::uint32_t> targets(most_tile_pixels, target);
+    const std::vector<std::uint32_t> targets(most_tile_pixels, 1);
     std::mutex mutex; // of the report
     const bool complete = parallel_for(
-        static_cast<std::int64_t>(end - first),
+        static_cast<std::int64_t>(end - taken_),
         [&](std::int64_t t) {
-            const PixelBounds& tile = tiles_[first + static_cast<std::size_t>(t)];
+            const PixelBounds& tile = tiles_[taken_ + static_cast<std::size_t>(t)];
             const std::size_t place = static_cast<std::size_t>(tile.y0 - film.y0) * stride +
                                       static_cast<std::size_t>(tile.x0 - film.x0);
             const std::size_t buckets = state.film.buckets_per_pixel();
             TileTally tally;
             const auto never = [] { return false; };
-            takers.tiles.render(
+            renderer.render(
                 {.bounds = tile,
                  .pixels = &state.film.pixels()[place],
                  .stride = stride,
@@ -109,31 +95,22 @@ bool IntegratorPilot::take_tiles(std::size_t count, const CancelFlag* cancel) {
     if (tiles.empty()) return true;
     bool complete = false;
     renderer_.serve([&](const SampleTakers& takers) {
-        PixelMeans means(tiles);
-        if (!sweep(takers, state_, taken_, count, 1, cancel)) return;
-        means.after_first(state_.film);
-        std::vector<double> splats_of_first;
-        if (state_.splats) splats_of_first = splat_luminances(*state_.splats, tiles);
-        const bool pass_ends = state_.splats && takers.tiles.order().closed(1);
-        const bool keeps = !pass_ends && renderer_.description().integrator.guiding == Guiding::off;
-        std::optional<RenderState> copy;
-        if (!keeps) copy = state_;
-        RenderState& state = keeps ? state_ : *copy;
-        if (!sweep(takers, state, taken_, count, 2, cancel)) return;
-        if (!keeps) state_.report.cpu_seconds = state.report.cpu_seconds;
-        picture_.parts.resize(state.splats ? 2 : 1);
-        means.after_second(state.film, picture_.parts[0]);
-        if (state.splats) {
-            const std::vector<double> both = splat_luminances(*state.splats, tiles);
+        // The first samples of other replicates: only replicates are independent of each other.
+        const TileRenderer others(takers.context, renderer_.accelerator(),
+                                  SampleOrder(renderer_.sampler(), {.index = 1, .count = 2}));
+        RenderState other(renderer_.description());
+        if (!sweep(takers.tiles, state_, count, cancel) || !sweep(others, other, count, cancel)) return;
+        picture_.parts.resize(state_.splats ? 2 : 1);
+        append_means(state_.film, tiles, picture_.parts[0].first);
+        append_means(other.film, tiles, picture_.parts[0].second);
+        if (state_.splats) {
             PilotPart& part = picture_.parts[1];
             double pixels = 0;
             for (const PixelBounds& tile : tiles) pixels += static_cast<double>(pixel_count(tile));
-            for (std::size_t i = 0; i < both.size(); ++i) {
-                part.first.push_back(static_cast<float>(splats_of_first[i] / pixels));
-                part.second.push_back(static_cast<float>((both[i] - splats_of_first[i]) / pixels));
-            }
+            append_splats(*state_.splats, tiles, pixels, part.first);
+            append_splats(*other.splats, tiles, pixels, part.second);
             // Light paths start from these tiles alone, and reach the whole film.
-            part.samples = pixels / static_cast<double>(state.film.pixels().size());
+            part.samples = pixels / static_cast<double>(state_.film.pixels().size());
         }
         complete = true;
     });
@@ -149,18 +126,20 @@ bool IntegratorPilot::take_groups(std::size_t count, const CancelFlag* cancel) {
     bool complete = false;
     renderer_.serve([&](const SampleTakers& takers) {
         const std::uint32_t size = takers.chains->order().replicate_size();
-        PixelMeans means(tiles);
+        std::vector<float> first;
         takers.chains->run(state_, size, watch);
         if (cancelled()) return;
-        means.after_first(state_.film);
+        append_means(state_.film, tiles, first);
         const RenderReport before = state_.report; // the first group has made the plan
         takers.chains->run(state_, 2 * size, watch);
         if (cancelled()) return;
         this->count(before, state_.report);
         cpu_seconds_ = state_.report.cpu_seconds;
-        picture_.parts.resize(1);
-        means.after_second(state_.film, picture_.parts[0]);
-        picture_.parts[0].samples = size;
+        PilotPart& part = picture_.parts.emplace_back();
+        append_means(state_.film, tiles, part.second); // of both
+        for (std::size_t i = 0; i < first.size(); ++i) part.second[i] = 2 * part.second[i] - first[i];
+        part.first = std::move(first);
+        part.samples = size;
         complete = true;
     });
     return complete;

@@ -11,9 +11,8 @@
 
 namespace montelux {
 
-// Takes two samples per pixel of some tiles; of chains two groups, which reach all pixels. They are those with which
-// the render by this integrator begins, and stay in its state, but for the second ones where that render would take
-// them otherwise: after the end of a pass, or guided.
+// Takes a sample per pixel of some tiles, with which the render by this integrator begins, and one of another replicate
+// beside it, to compare; of chains the first two groups, which reach all pixels.
 class IntegratorPilot {
   public:
     // The renderer's description has the integrator. The renderer and the tiles must outlive it.
@@ -33,8 +32,8 @@ class IntegratorPilot {
     RenderState take_state() { return std::move(state_); }
 
   private:
-    bool sweep(const SampleTakers& takers, RenderState& state, std::size_t first, std::size_t end,
-               std::uint32_t target, const CancelFlag* cancel);
+    // Takes a sample of every pixel of the tiles that are not yet taken, up to the first `end`.
+    bool sweep(const TileRenderer& renderer, RenderState& state, std::size_t end, const CancelFlag* cancel);
     void count(const RenderReport& before, const RenderReport& after);
 
     const Renderer& renderer_;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <memory>
 #include <utility>
 
@@ -38,6 +39,22 @@ double MergingPasses::radius(std::uint64_t index) const {
     return first_radius_ * std::pow(static_cast<double>(index) + 1, radius_exponent);
 }
 
+// Light merges across the whole scene, at a cost that is quadratic in the number of pixels; or never, as positions in
+// single precision lie further apart.
+void MergingPasses::check_radius() const {
+    constexpr double least_share = 1e-6;
+    const double scene = accelerator_.bounds().radius();
+    const bool small = first_radius_ < least_share * scene;
+    if (!small && !(first_radius_ > scene)) return;
+    char text[200];
+    std::snprintf(
+        text, sizeof text,
+        "the radius %.3g is too %s for this scene, whose own is %.3g; 'auto' chooses one by the size of "
+        "a pixel",
+        first_radius_, small ? "small" : "large", scene);
+    throw Error("merging", text);
+}
+
 // From a part of the first pass: how large pixels are on the surfaces that are seen, and how much memory a path takes.
 void MergingPasses::plan() {
     RenderReport ignored;
@@ -67,7 +84,7 @@ void MergingPasses::plan() {
     paths_ = most < double(pixels_) ? std::max<std::uint64_t>(static_cast<std::uint64_t>(most), 1) : pixels_;
 
     first_radius_ = double(settings_.radius);
-    if (first_radius_ > 0) return;
+    if (first_radius_ > 0) return check_radius();
     constexpr int across = 64;
     std::vector<double> sizes;
     RayTracer tracer(accelerator_);

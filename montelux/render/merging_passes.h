@@ -32,6 +32,8 @@ class MergingPasses {
 
   private:
     void plan();
+    // Throws Error where the first radius does not suit the scene.
+    void check_radius() const;
     std::vector<LightPaths> trace(std::uint64_t index, std::uint64_t paths, RenderReport& report,
                                   std::mutex& mutex, const CancelFlag* cancel) const;
 

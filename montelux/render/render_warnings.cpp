@@ -51,11 +51,11 @@ std::string merging_notice(const RenderSnapshot& result, const RenderTarget& tar
     std::string notice = text;
     const double mean = result.error.mean_luminance;
     if (m.passes < 2 || !(mean > 0)) {
-        notice += "the bias is not known from one pass";
+        notice += "the bias is not known: a second replicate tells it";
     } else {
         std::snprintf(
             text, sizeof text,
-            "estimated bias %.2g +- %.1g %% of the picture's mean, %.2g %% (rms) of it over 16 x 16 pixels",
+            "estimated bias %.2g +- %.2g %% of the picture's mean, %.2g %% (rms) of it over 16 x 16 pixels",
             100 * m.bias / mean, 100 * m.bias_error / mean, 100 * m.bias_rms / mean);
         notice += text;
     }

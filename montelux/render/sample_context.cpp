@@ -5,15 +5,19 @@
 #include <type_traits>
 
 #include "montelux/film/splat_film.h"
+#include "montelux/mc/random/golden_ratio.h"
 #include "montelux/mc/random/hash.h"
+#include "montelux/mc/random/uniform_bits.h"
+#include "montelux/mc/random/weyl.h"
 #include "montelux/transport/visible_pixel.h"
 
 namespace montelux {
 
 namespace {
 
-// A pixel of no film: numbers that all samples of a pass share.
-constexpr std::uint32_t pass_pixel = 0xffffffff;
+// Of the sequences from which passes that merge take their wavelengths and times.
+const std::uint64_t wavelength_step = golden_ratio_step(0, generalised_golden_ratio(1)),
+                    time_step = weyl_step(0);
 
 // Scenes without media pay nothing for them.
 Integrator make_integrator(const SceneDescription& description, const IntegratorSettings& settings,
@@ -52,9 +56,13 @@ PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) c
     point.lens = camera_.has_lens() ? stream.next_2d() : Vec2f{0.5f, 0.5f};
     float u_time = moves_ ? stream.next_1d() : 0;
     if (merges_) [[unlikely]] {
-        SampleStream pass(sampler_, pass_pixel, pass_pixel, key.index);
-        u_lambda = pass.next_1d();
-        if (moves_) u_time = pass.next_1d();
+        // Of the whole picture: sequences that cover wavelengths and times evenly after any number of passes.
+        const auto shared = [&](std::uint64_t dimension, std::uint64_t step) {
+            const std::uint64_t place = hash_key(sampler_.seed, dimension) + key.index * step;
+            return unit_float(static_cast<std::uint32_t>(place >> 32));
+        };
+        u_lambda = shared(0x77617665, wavelength_step);
+        if (moves_) u_time = shared(0x74696d65, time_step);
     }
     point.time = moves_ ? camera_.time_at(u_time) : 0;
     point.filter = filter_.sample(u_film);

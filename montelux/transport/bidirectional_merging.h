@@ -76,9 +76,11 @@ class BidirectionalMerging : protected BidirectionalStrategies<Stream> {
     SampledSpectrum merge(std::size_t k, const SubpathVertex& z, const LightMapVertex& y,
                           const LightPaths& paths) {
         const Vec3f wi = z.surface.frame.to_local(-y.w);
+        // Of the light's own facet: another one of a smooth mesh may be lit at an angle that is far from it, or from behind.
+        const float facing = dot(y.ng, y.w), cosine = std::abs(facing);
+        if (!(facing * dot(z.s.ng, y.w) * dot(y.ng, z.s.ng) > 0)) return {};
         const BsdfEvaluation e = z.evaluate(z.wo, wi, TransportMode::radiance, stream_);
-        const float cosine = std::abs(dot(z.s.ng, y.w));
-        if (is_black(e.f) || !(cosine > 0)) return {};
+        if (is_black(e.f)) return {};
         // Flux per area over the cosine is what radiance times solid angle is.
         SampledSpectrum value =
             z.throughput * e.f * y.throughput / (cosine * static_cast<float>(area_paths_));

@@ -54,8 +54,10 @@ std::uint32_t LightMap::slot(const Cell& cell) const {
 std::size_t LightMap::slots_around(Point3f p, std::array<std::uint32_t, 8>& slots) const {
     Cell low, high;
     for (int i = 0; i < 3; ++i) {
-        low[static_cast<std::size_t>(i)] = cell(double(p[i]) - radius_);
-        high[static_cast<std::size_t>(i)] = cell(double(p[i]) + radius_);
+        const auto axis = static_cast<std::size_t>(i);
+        low[axis] = cell(double(p[i]) - radius_);
+        // Coordinates next to p may lie further away than a tiny radius.
+        high[axis] = std::min(cell(double(p[i]) + radius_), low[axis] + 1);
     }
     std::size_t count = 0;
     Cell at;

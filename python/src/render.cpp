@@ -78,7 +78,10 @@ std::vector<std::string> warnings_of(const RenderJob& job) {
     const RenderSession& session = job.session();
     std::vector<std::string> texts{bad_sample_warning(result.report.bad, session.sampler().seed),
                                    missing_error_warning(result, session.renderer()),
-                                   session.checkpoint_failure(), result.denoise_failure};
+                                   merging_notice(result, session.renderer().target()),
+                                   merging_memory_warning(result.report.merging),
+                                   session.checkpoint_failure(),
+                                   result.denoise_failure};
     std::erase(texts, "");
     return texts;
 }

@@ -125,6 +125,7 @@ TEST(IntegratorChoice, PilotsTakeTheSamplesOfTheRender) {
         SamplerKind sampler;
         RenderTarget target;
         Guiding guiding = Guiding::off;
+        std::uint32_t spp = 18;
     };
     const RenderTarget none, aimed{.error = 0.05}, adaptive{.error = 0.05, .adaptive = true};
     using K = IntegratorKind;
@@ -136,10 +137,12 @@ TEST(IntegratorChoice, PilotsTakeTheSamplesOfTheRender) {
                                            {K::bidirectional, S::sobol, none},
                                            {K::bidirectional, S::sobol, aimed},
                                            {K::bidirectional, S::independent, none},
+                                           {K::path, S::sobol, none, Guiding::off, 1},
+                                           {K::bidirectional, S::independent, none, Guiding::off, 1},
                                            {K::metropolis, S::sobol, aimed}}) {
         SceneDescription d = mixed_scene(1, 30, 26).description;
         d.film.filter = GaussianFilter{};
-        d.sampler = {.kind = c.sampler, .seed = 4, .spp = 18};
+        d.sampler = {.kind = c.sampler, .seed = 4, .spp = c.spp};
         d.integrator.method = c.kind;
         d.integrator.guiding = c.guiding;
         const Renderer renderer(d, c.target);
@@ -242,6 +245,12 @@ TEST(IntegratorChoice, SaysWhyOthersCannotRender) {
     SceneBuilder b = lit_floor(32, 64);
     EXPECT_THROW(chosen_for(b.description, {.slice = {0, 2}}), Error);
     EXPECT_THROW(Renderer{b.description}, Error); // not chosen
+    b.description.integrator.merging = MergingSettings{};
+    EXPECT_THROW(chosen_for(b.description), Error);
+    SceneBuilder alone = lit_floor(32, 64);
+    alone.description.integrator.guiding = Guiding::on;
+    EXPECT_EQ(choice_text(chosen_for(alone.description)->state.report.choice),
+              "path: no other integrator can render this scene with these settings");
 }
 
 TEST(IntegratorChoice, OfDarkScenesAndShortRenders) {

@@ -98,6 +98,28 @@ TEST(MergingPictures, FurnaceAtAnyScale) {
     }
 }
 
+// Facets of a ball with its normals: light falls on neighbouring ones at angles that are far apart.
+TriangleMesh smooth_icosahedron(const Transform& place) {
+    const float g = std::numbers::phi_v<float>;
+    TriangleMesh mesh;
+    for (const float a : {-1.0f, 1.0f})
+        for (const float b : {-g, g})
+            for (const Vec3f& v : {Vec3f{0, a, b}, Vec3f{a, b, 0}, Vec3f{b, 0, a}}) {
+                mesh.positions.push_back(Vec3f(place.point(Vec3d(normalize(v)))));
+                mesh.normals.push_back(normalize(v));
+            }
+    const auto near = [&](Index i, Index j) { return dot(mesh.normals[i], mesh.normals[j]) > 0.4f; };
+    for (Index i = 0; i < 12; ++i)
+        for (Index j = i + 1; j < 12; ++j)
+            for (Index k = j + 1; k < 12; ++k)
+                if (near(i, j) && near(j, k) && near(i, k)) {
+                    const Vec3f a = mesh.normals[i], b = mesh.normals[j], c = mesh.normals[k];
+                    const bool outward = dot(cross(b - a, c - a), a) > 0;
+                    mesh.indices.insert(mesh.indices.end(), {i, outward ? j : k, outward ? k : j});
+                }
+    return mesh;
+}
+
 TEST(MergingPictures, AgreesWithPathTracing) {
     std::vector<AgreementCase> cases;
     const auto add = [&](const char* name, const SceneBuilder& b) { cases.push_back({name, b}); };
@@ -120,6 +142,11 @@ TEST(MergingPictures, AgreesWithPathTracing) {
     bent.normals = {{-0.3f, -0.1f, 1}, {0.4f, 0, 1}, {0.3f, 0.3f, 1}, {-0.2f, 0.3f, 1}};
     normals.add_mesh(bent, normals.add(DiffuseMaterial{gray(0.8f)}));
     add("shading normals", normals);
+    SceneBuilder smooth = lit_corner();
+    add_box_lamp(smooth);
+    smooth.add_mesh(smooth_icosahedron(Transform::translate({0, 0, 0.5}) * Transform::scale({0.4, 0.4, 0.4})),
+                    smooth.add(DiffuseMaterial{gray(0.8f)}));
+    add("smooth facets", smooth);
     const Spectrum flint(PiecewiseLinear::from_pairs(std::array{360.0f, 1.8f, 830.0f, 1.5f}));
     SceneBuilder glass = lit_corner();
     add_box_lamp(glass);
@@ -343,6 +370,8 @@ TEST(MergingPictures, RefusesWhatItCannotDo) {
         expect_refused([&](auto& d) { d.integrator.method = kind; }, "only the integrator 'bidirectional'");
     expect_refused([](auto& d) { d.integrator.merging->radius = -1; }, "radius");
     expect_refused([](auto& d) { d.integrator.merging->radius = std::nanf(""); }, "radius");
+    expect_refused([](auto& d) { d.integrator.merging->radius = 1e-9f; }, "too small");
+    expect_refused([](auto& d) { d.integrator.merging->radius = 100; }, "too large");
     expect_refused([](auto& d) { d.integrator.merging->memory = 0; }, "memory");
     expect_refused([](auto& d) { d.integrator.max_depth = 1; }, "nothing can merge");
     expect_refused(

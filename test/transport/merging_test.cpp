@@ -33,11 +33,12 @@ std::vector<LightPaths> scattered_points(double scale, Vec3d center, int count) 
 TEST(LightMap, FindsEachVertexWithinTheRadiusOnce) {
     for (const double scale : {1e-4, 1.0, 1e5})
         for (const Vec3d& center : {Vec3d{0, 0, 0}, scale * Vec3d{-3, 7, 0.5}})
-            for (const double share : {0.003, 0.05, 3.0}) {
+            for (const double share : {0.2e-16, 1e-16, 1.5e-16, 3e-16, 0.003, 0.05, 3.0}) {
                 const double radius = share * scale;
                 const LightMap map(scattered_points(scale, center, 3000), 3000, radius);
                 for (int i = 0; i < 100; ++i) {
-                    const Point3f p(center + scale * Vec3d{0.01 * i, 0.013 * (i * 7 % 80), 0.05});
+                    Point3f p(center + scale * Vec3d{0.01 * i, 0.013 * (i * 7 % 80), 0.05});
+                    if (i % 2 == 1) p = map.parts()[1].vertices[static_cast<std::size_t>(i)].p;
                     std::vector<int> found, expected;
                     map.visit(p, [&](const LightMapVertex& v, const LightPaths&, float distance2) {
                         EXPECT_EQ(distance2, length_squared(v.p - p));
