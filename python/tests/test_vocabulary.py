@@ -54,10 +54,10 @@ def test_options_of_render_have_the_names_of_python():
     loading = (montelux.Scene, montelux.load, montelux.parse)
     of_the_program |= {"texture_memory"}.intersection(*map(arguments, loading))
     of_files = arguments(montelux.load) | set(inspect.signature(montelux.Picture.save).parameters)
-    # sampler.kind, integrator.method and .large_step_probability, film.max_component_value, film.layers_in_camera_space, film.half, the groups of the lights, `time` of
+    # sampler.kind, integrator.method, .large_step_probability and .merging.memory, film.max_component_value, film.layers_in_camera_space, film.half, the groups of the lights, `time` of
     # montelux.load, which renders no sequences
     others = {"sampler", "integrator", "large_steps", "clamp", "layer_space", "no_half", "light_groups", "time_of_scene"}
-    others |= {"frames", "frame_rate", "turntable", "define"}  # the last: `definitions` of montelux.load
+    others |= {"merging_memory", "frames", "frame_rate", "turntable", "define"}  # the last: `definitions` of montelux.load
     assert known - ours - of_scene - of_the_program - of_files == others | {"bits"}  # 16 bits: of the program alone
     assert {"spp", "max_spp", "time"} <= known & ours and "spp" in settings_of(montelux.Sampler)
 
