@@ -35,12 +35,11 @@ grep -q '"device": "emulation by one thread of the processor"' json || fail "--j
 "$montelux" integrate x*x --over x=0:1 --method vegas --evaluations 2e4 --checkpoint state --device emulated >/dev/null 2>&1
 "$montelux" integrate x*x --over x=0:1 --method vegas --evaluations 4e4 --checkpoint state --resume --device emulated >out 2>/dev/null
 grep -q 0.333 out || fail "--resume: $(cat out)"
-# The user's flags do not change the arithmetic.
-CXXFLAGS="-ffast-math" "$montelux" integrate '1/(x-0.5)*0 + (x < 0.1 ? sqrt(0-1) : y)' --over x,y=0:1 --method basic \
-    --evaluations 20k --quiet --device emulated >there 2>&1
-"$montelux" integrate '1/(x-0.5)*0 + (x < 0.1 ? sqrt(0-1) : y)' --over x,y=0:1 --method basic --evaluations 20k \
-    --quiet >here 2>&1
-cmp -s here there || fail "CXXFLAGS=-ffast-math: $(cat there) instead of $(cat here)"
+# The user's flags do not change the arithmetic: -ffast-math knows no infinite ranges.
+CXXFLAGS=-ffast-math
+export CXXFLAGS
+same 'exp(-x^2)*cos(y)' --over x=0:inf --over y=0:pi/2 --method vegas --evaluations 20k
+unset CXXFLAGS
 # A signal waits for the compiler, and its temporary files are removed.
 mkdir tmp
 printf '#!/bin/sh\nsleep 1\nexec c++ "$@"\n' >slow-c++
