@@ -94,7 +94,8 @@ def _on_device(
 ) -> PreparedIntegrand:
     if device is None:
         raise Error(
-            "integrand: a text was given; expected a function, or device='cuda' of integrate() with a formula or a source"
+            "integrand: a text was given; expected a function, or device='cuda' of integrate() with a formula or a "
+            "source"
         )
     if not isinstance(device, str) or device not in DEVICES:
         raise Error("device: " + unknown("device", str(device), DEVICES))
