@@ -45,7 +45,7 @@ void compile(const std::string& source, const fs::path& library) {
     constexpr std::array<std::string_view, 4> of_cpp{".cpp", ".cc", ".cxx", ".C"};
     bool cpp = false;
     for (const std::string_view known : of_cpp) cpp = cpp || extension == known;
-    if (extension == ".cu")
+    if (CompiledFunction::is_cuda(source))
         throw Error(source,
                     "is a CUDA source, for `montelux integrate --device cuda`; expected one in C (.c) or C++ "
                     "(.cpp, .cc, .cxx)");
@@ -61,6 +61,10 @@ void compile(const std::string& source, const fs::path& library) {
 } // namespace
 
 std::string CompiledFunction::file_of(const std::string& place) { return read_place(place).file; }
+
+bool CompiledFunction::is_cuda(const std::string& place) {
+    return fs::path(file_of(place)).extension() == ".cu";
+}
 
 std::string CompiledFunction::absolute(const std::string& place) {
     const Place at = read_place(place);

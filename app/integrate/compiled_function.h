@@ -37,6 +37,7 @@ class CompiledFunction {
 
     // The file's part of a place.
     static std::string file_of(const std::string& place);
+    static bool is_cuda(const std::string& place);
     // The same place, of a file by its absolute path.
     static std::string absolute(const std::string& place);
 

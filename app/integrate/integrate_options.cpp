@@ -1,6 +1,7 @@
 #include "app/integrate/integrate_options.h"
 
 #include "app/integrate/compiled_function.h"
+#include "app/interrupt.h"
 #include "app/joined.h"
 #include "app/option_values.h"
 #include "app/usage_error.h"
@@ -118,6 +119,7 @@ void check_sources(const IntegrateOptions& o) {
 
 NamedIntegrand on_device(const std::string& device, const FunctionSource& source,
                          const std::vector<std::string>& variables, std::vector<std::string> names) {
+    const WaitingSignals until_compiled; // the emulation makes temporary files
     auto compiled = std::make_shared<const DeviceFunction>(Device::open(device), source,
                                                            static_cast<int>(variables.size()));
     const Integrand f = Integrand::compiled(compiled);
@@ -136,6 +138,12 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
                 throw UsageError("--library",
                                  "a device compiles sources and does not call libraries; expected a "
                                  "FORMULA or --source with --device");
+            if (!o.save_density.empty() && CompiledFunction::is_cuda(o.source))
+                throw UsageError(
+                    "--save-density",
+                    "'" + CompiledFunction::file_of(o.source) +
+                        "' is a CUDA source, which `montelux sample` cannot call; expected a FORMULA, "
+                        "or a source in C or C++");
             const FunctionSource source = CompiledFunction::read_source(o.source, form);
             return on_device(o.device, source, variables,
                              CompiledFunction::names(source.function, source.components));

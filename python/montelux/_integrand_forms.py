@@ -93,7 +93,10 @@ def _on_device(
     device: str | None,
 ) -> PreparedIntegrand:
     if device is None:
-        raise Error("integrand: a text was given; expected a function, or device='cuda' with a formula or a source")
+        raise Error(
+            "integrand: a text was given; expected a function, or device='cuda' of integrate() with a formula or a "
+            "source"
+        )
     if not isinstance(device, str) or device not in DEVICES:
         raise Error("device: " + unknown("device", str(device), DEVICES))
     if not is_text(f):

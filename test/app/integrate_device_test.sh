@@ -35,6 +35,21 @@ grep -q '"device": "emulation by one thread of the processor"' json || fail "--j
 "$montelux" integrate x*x --over x=0:1 --method vegas --evaluations 2e4 --checkpoint state --device emulated >/dev/null 2>&1
 "$montelux" integrate x*x --over x=0:1 --method vegas --evaluations 4e4 --checkpoint state --resume --device emulated >out 2>/dev/null
 grep -q 0.333 out || fail "--resume: $(cat out)"
+# The user's flags do not change the arithmetic: -ffast-math knows no infinite ranges.
+CXXFLAGS=-ffast-math
+export CXXFLAGS
+same 'exp(-x^2)*cos(y)' --over x=0:inf --over y=0:pi/2 --method vegas --evaluations 20k
+unset CXXFLAGS
+# A signal waits for the compiler, and its temporary files are removed.
+mkdir tmp
+printf '#!/bin/sh\nsleep 1\nexec c++ "$@"\n' >slow-c++
+chmod +x slow-c++
+TMPDIR=$PWD/tmp CXX=$PWD/slow-c++ "$montelux" integrate x --over x=0:1 --method basic --device emulated >/dev/null 2>&1 &
+job=$!
+for _ in 1 2 3 4 5 6 7 8 9 10; do [ -n "$(ls tmp)" ] && break; sleep 0.2; done
+kill -TERM $job
+wait $job && fail "SIGTERM while the emulation compiles: exit code 0"
+[ -n "$(ls tmp)" ] && fail "SIGTERM while the emulation compiles left $(ls tmp)"
 
 # Mistakes.
 expect 2 "there is no device 'gpu'; expected one of cuda, emulated" integrate x --over x=0:1 --method basic --device gpu
@@ -46,6 +61,8 @@ expect 2 "the points of a device stay there" integrate x --over x=0:1 --method b
 expect 1 "points of a ball in 2 dimensions are not drawn on a device" integrate x --over x,y --domain ball --method basic --device emulated
 expect 1 "by density are not drawn on a device" integrate x --over x=0:1 --density 'x=exp(-x)' --method basic --device emulated
 expect 1 "g.cu: is a CUDA source, for" integrate --source g.cu --over x=0:1
+expect 2 "'g.cu' is a CUDA source, which" integrate --source g.cu --over x=0:1 --method vegas --device emulated --save-density d.density
+[ -e d.density ] && fail "--save-density with a CUDA source left a file"
 expect 1 "no.cu: there is no such file" integrate --source no.cu --over x=0:1 --method basic --device emulated
 printf 'double integrand(int n, const double *x) { return y; }\n' >bad.cu
 expect 1 "bad.cu:1" integrate --source bad.cu --over x=0:1 --method basic --device emulated

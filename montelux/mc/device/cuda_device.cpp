@@ -89,8 +89,11 @@ class CudaProgram final : public DeviceProgram {
         cuda_->driver.check(cuda_->driver.launch(evaluate_, blocks, 1, 1, device_block_threads, 1, 1, 0,
                                                  nullptr, parameters.data(), nullptr),
                             "a kernel cannot be started");
-        cuda_->driver.check(cuda_->driver.synchronise(),
-                            "a kernel failed; does the integrand stay in its arrays?");
+        const CudaDriver::Result ended = cuda_->driver.synchronise();
+        cuda_->driver.check(ended, ended == CudaDriver::launch_timeout
+                                       ? "a kernel was stopped, because this GPU also drives a screen, which "
+                                         "limits the time of a kernel; use another GPU"
+                                       : "a kernel failed; does the integrand stay in its arrays?");
     }
 
   private:

@@ -20,7 +20,7 @@ struct CudaDriver {
     using Pointer = unsigned long long; // CUdeviceptr
 
     static constexpr Result out_of_memory = 2, no_device = 100, no_binary = 209, invalid_ptx = 218,
-                            unsupported_ptx = 222, system_driver_mismatch = 803;
+                            unsupported_ptx = 222, launch_timeout = 702, system_driver_mismatch = 803;
     static constexpr int capability_major = 75, capability_minor = 76; // CUdevice_attribute
 
     // Throws Error where there is no driver, or one that lacks a function.

@@ -1,6 +1,8 @@
 #include "montelux/mc/device/device_function.h"
 
 #include <algorithm>
+#include <cctype>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -11,6 +13,30 @@ namespace {
 
 // Their points are arrays of a thread.
 constexpr int most_dimensions = 1024, most_components = 1024;
+
+bool is_name(const std::string& text) {
+    return !text.empty() && (std::isdigit(static_cast<unsigned char>(text[0])) == 0) &&
+           std::ranges::all_of(text,
+                               [](unsigned char c) { return std::isalnum(c) != 0 || c == '_' || c == ':'; });
+}
+
+std::string declaration(const FunctionSource& f) {
+    const std::string parameters = f.parameters.empty() ? "" : ", const double *parameters";
+    return f.components == 0
+               ? "double " + f.function + "(int n, const double *x" + parameters + ")"
+               : "void " + f.function + "(int n, const double *x, int m, double *y" + parameters + ")";
+}
+
+std::unique_ptr<DeviceProgram> compile(Device& device, const FunctionSource& source, int dimensions) {
+    try {
+        return device.compile(kernel_text(source, dimensions), source.file);
+    } catch (const Error& error) {
+        // An error in the kernel is one of the call, since the rest of it always compiles.
+        const std::string text = error.what();
+        if (text.find("device/evaluate.cu") == std::string::npos) throw;
+        throw Error(text + "\n" + source.file + ": expected the function `" + declaration(source) + "`");
+    }
+}
 
 } // namespace
 
@@ -23,7 +49,12 @@ DeviceFunction::DeviceFunction(std::shared_ptr<Device> device, const FunctionSou
     if (source.components < 0 || source.components > most_components)
         throw Error("device", "expected at most " + std::to_string(most_components) + " components, got " +
                                   std::to_string(source.components));
-    program_ = device_->compile(kernel_text(source, dimensions), source.file);
+    if (!is_name(source.function))
+        throw Error(source.file,
+                    "'" + source.function +
+                        "' is not the name of a function; expected FILE:FUNCTION, or FILE alone for "
+                        "the function `integrand`");
+    program_ = compile(*device_, source, dimensions);
     parameters_.assign(source.parameters);
 }
 

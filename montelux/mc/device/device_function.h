@@ -12,7 +12,7 @@
 
 namespace montelux {
 
-// A value of many threads, which take turns.
+// Used by many threads: at() takes turns, and run() is one's own to order.
 class DeviceFunction {
   public:
     // Throws Error with the compiler's messages where it cannot be compiled.

@@ -44,7 +44,9 @@ class EmulatedDevice final : public Device {
                            .library = library,
                            .language = Compilation::Language::cpp,
                            .messages = Compilation::Messages::in_error,
-                           .options = {"-std=c++17", "-ffp-contract=off"},
+                           .options = {"-std=c++17"},
+                           // Arithmetic as written, whatever the user's flags are.
+                           .overrides = {"-fno-fast-math", "-ffp-contract=off"},
                            .name = file});
         std::string reason;
         std::optional<SharedLibrary> opened = SharedLibrary::open(library, reason);

@@ -80,7 +80,7 @@ std::string literal(double value) {
     if (std::isnan(value)) return "nan(\"\")";
     if (std::isinf(value)) return value > 0 ? "INFINITY" : "(-INFINITY)";
     std::array<char, 40> text{};
-    std::snprintf(text.data(), text.size(), value < 0 ? "(%.17e)" : "%.17e", value);
+    std::snprintf(text.data(), text.size(), std::signbit(value) ? "(%.17e)" : "%.17e", value);
     return text.data();
 }
 
@@ -155,27 +155,26 @@ class Translator {
         }
         return result;
     }
-    std::string sum() {
-        std::string result = product();
-        for (;;) {
-            if (take("+"))
-                result = "(" + result + " + " + product() + ")";
-            else if (take("-"))
-                result = "(" + result + " - " + product() + ")";
-            else
-                return result;
+    // One bracket around a chain of operators, which C takes from the left, too: compilers limit how deeply brackets
+    // nest.
+    template <typename Operand>
+    std::string chain(const Operand& operand, std::string_view one, std::string_view other) {
+        std::string result = operand();
+        bool several = false;
+        for (;; several = true) {
+            const bool first = take(one);
+            if (!first && !take(other)) return several ? "(" + result + ")" : result;
+            result += " ";
+            result += first ? one : other;
+            result += " ";
+            result += operand();
         }
     }
+    std::string sum() {
+        return chain([this] { return product(); }, "+", "-");
+    }
     std::string product() {
-        std::string result = signed_power();
-        for (;;) {
-            if (take("*"))
-                result = "(" + result + " * " + signed_power() + ")";
-            else if (take("/"))
-                result = "(" + result + " / " + signed_power() + ")";
-            else
-                return result;
-        }
+        return chain([this] { return signed_power(); }, "*", "/");
     }
     std::string signed_power() {
         if (++depth_ > deepest) refuse("the formula is nested too deeply");

@@ -21,8 +21,16 @@ class DeviceValues {
     static std::unique_ptr<DeviceValues> of(const Evaluator& g);
 
     DeviceSampler& sampler() { return sampler_; }
-    // Points of a block.
-    std::uint64_t block_size() const { return g_.integrand().on_device().block; }
+    // Points of a block: as many as the integrand asks for, if memory allows.
+    std::uint64_t block_size() const {
+        return std::min<std::uint64_t>(g_.integrand().on_device().block, most_points());
+    }
+    // Points of which a block has room for the values.
+    std::uint64_t most_points() const {
+        constexpr std::uint64_t most_bytes = 1 << 27, least = 1 << 12, most = 1 << 20;
+        const std::uint64_t bytes = sizeof(double) * (static_cast<std::uint64_t>(g_.components()) + 2);
+        return std::clamp(most_bytes / bytes, least, most);
+    }
     // The points of fill_random. `placed`: in the sampler's boxes and by its map.
     void draw_random(std::uint64_t seed, std::uint32_t stream, std::uint64_t first, std::uint64_t count,
                      bool placed = false);

@@ -26,7 +26,7 @@ class ScrambledSobol {
     // Fills u, which has this many dimensions, with points first, first + 1, ...
     void fill(PointBuffer& u, std::uint64_t first) const;
 
-    // For those who compute the points elsewhere: a key of each dimension, and 32 bit-reversed generator columns.
+    // Tables to compute the points elsewhere: a key of each dimension, and 32 bit-reversed generator columns.
     std::span<const std::uint32_t> keys() const { return keys_; }
     std::span<const std::uint32_t> columns() const { return columns_; }
 

@@ -77,6 +77,7 @@ void compile(const Compilation& c) {
     for (const char* word : {"-O2", "-fPIC", "-shared"}) command.emplace_back(word);
     command.insert(command.end(), c.options.begin(), c.options.end());
     add_words(command, in_c ? "CFLAGS" : "CXXFLAGS", "");
+    command.insert(command.end(), c.overrides.begin(), c.overrides.end());
     for (const std::string& word :
          {std::string("-o"), c.library.string(), fs::absolute(c.source).string(), std::string("-lm")})
         command.push_back(word);

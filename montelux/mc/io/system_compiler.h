@@ -31,8 +31,9 @@ struct Compilation {
     std::filesystem::path source, library; // what is read, and what is written
     Language language = Language::c;
     Messages messages = Messages::shown;
-    std::vector<std::string> options = {}; // before those of the environment
-    std::string name = {};                 // of the source in errors; empty: its path
+    std::vector<std::string> options = {};   // before those of the environment
+    std::vector<std::string> overrides = {}; // after those of the environment
+    std::string name = {};                   // of the source in errors; empty: its path
 };
 
 // $CC or cc, and $CXX or c++, translate it, with -O2 and the words of $CFLAGS or $CXXFLAGS. Throws Error.

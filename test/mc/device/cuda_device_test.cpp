@@ -95,6 +95,7 @@ TEST_F(CudaDeviceTest, SaysWhatFails) {
     expect_said("cuMemcpyHtoD:1", "numbers cannot be copied to the GPU");
     expect_said("cuLaunchKernel:1", "a kernel cannot be started");
     expect_said("cuCtxSynchronize:719", "unspecified launch failure (CUDA_ERROR_LAUNCH_FAILED, 719)");
+    expect_said("cuCtxSynchronize:702", "this GPU also drives a screen");
     expect_said("cuMemcpyDtoH:1", "numbers cannot be copied from the GPU");
 }
 

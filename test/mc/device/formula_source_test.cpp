@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ const std::vector<std::string> x_and_y{"x", "y"};
 
 // The values of formulas at a point.
 std::vector<double> values(const std::vector<std::string>& formulas, double x, double y) {
-    const std::pair<std::string, double> given[] = {{"s", 0.1}, {"large", 1e300}};
+    const std::pair<std::string, double> given[] = {{"s", 0.1}, {"large", 1e300}, {"zero", -0.0}};
     const DeviceFunction f(Device::open("emulated"), formula_source(formulas, x_and_y, given), 2);
     const double point[2] = {x, y};
     std::vector<double> result(formulas.size());
@@ -59,6 +60,9 @@ TEST(FormulaSource, MeansWhatTheProgramMeans) {
          -2 - 1 + std::pow(x, y) + std::hypot(x, y) + (y - std::floor(y))},
         {"min(x,y,1)+max(x,y)+sum(1,2,3)+avg(1,2)", y + x + 6 + 1.5},
         {"min(x)", x},
+        {"x - 2 + y - (3 - 1) / 4 * 2", x - 2 + y - 1},
+        {"x*2/y*3", x * 2 / y * 3},
+        {"-zero", 0},
     };
     std::vector<std::string> formulas;
     for (const auto& [text, value] : cases) formulas.push_back(text);
@@ -66,6 +70,18 @@ TEST(FormulaSource, MeansWhatTheProgramMeans) {
     for (std::size_t i = 0; i < cases.size(); ++i)
         EXPECT_NEAR(found[i], cases[i].second, 1e-14 * (1 + std::abs(cases[i].second))) << cases[i].first;
     EXPECT_TRUE(std::isnan(values({"nan"}, x, y)[0]));
+}
+
+TEST(FormulaSource, LongChainsDoNotNest) {
+    std::string formula = "x";
+    for (int i = 0; i < 300; ++i) formula += i % 2 == 0 ? " + x*y/2" : " - 1";
+    const std::string text = formula_source(std::vector{formula}, x_and_y).text;
+    int depth = 0, deepest = 0;
+    for (const char c : text) {
+        depth += c == '(' ? 1 : c == ')' ? -1 : 0;
+        deepest = std::max(deepest, depth);
+    }
+    EXPECT_LT(deepest, 10);
 }
 
 TEST(FormulaSource, SaysWhatCannotBeRead) {

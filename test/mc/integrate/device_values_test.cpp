@@ -128,6 +128,17 @@ TEST_F(OnEmulatedDevice, ManyBlocksAgreeToRounding) {
     }
 }
 
+TEST_F(OnEmulatedDevice, BlocksOfManyComponentsAreBoundedInBytes) {
+    const auto block_of = [](int components) {
+        const Integrand f = integrand(
+            "void integrand(int, const double* x, int m, double* y) { y[m - 1] = *x; }", 1, components);
+        return DeviceValues::of(Evaluator(f, Domain::unit_cube(1)))->block_size();
+    };
+    EXPECT_EQ(block_of(2), 1u << 20);
+    EXPECT_LE(block_of(1000) * 1000 * sizeof(double), 1u << 27);
+    EXPECT_GE(block_of(1000), 1u << 12);
+}
+
 TEST_F(OnEmulatedDevice, InfiniteRangesHaveTheProcessorsBits) {
     const double inf = infinity;
     const Domain domain({{-inf, inf}, {0, inf}, {-inf, 2}, {-1, 3}});
@@ -250,8 +261,11 @@ TEST_F(OnEmulatedDevice, TheCompilersMessagesAreInTheError) {
                  [&] { compile("double integrand(int, const double* x) {\n return unknown_name; }"); });
     expect_error("unknown_name",
                  [&] { compile("double integrand(int, const double*) { return unknown_name; }"); });
-    expect_error("other",
+    expect_error("expected the function `double other(int n, const double *x)`",
                  [&] { compile("double integrand(int, const double* x) { return x[0]; }", "other"); });
+    expect_error("expected the function `double integrand(int n, const double *x)`",
+                 [&] { compile("double integrand(double x) { return x; }"); });
+    expect_error("bad.cu: '' is not the name of a function", [&] { compile("", ""); });
 }
 
 } // namespace

@@ -52,7 +52,7 @@ class QuasiEstimator final : public Estimator {
         const std::uint64_t each = request.max_evaluations / static_cast<std::uint64_t>(replicates);
         const std::uint64_t next = next_ ? next_ : choose_points(request, each);
         const std::uint64_t begin = (extensible() ? points_ : 0) + position_;
-        constexpr std::uint64_t most = 1 << 20;
+        const std::uint64_t most = device_ ? device_->most_points() : 1 << 20;
         const std::uint64_t size =
             next == 0 ? 0
                       : std::min({next - begin, each,

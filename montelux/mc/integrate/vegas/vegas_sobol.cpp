@@ -116,9 +116,10 @@ class SobolVegas final : public VegasEstimator {
     std::uint64_t chunk(const Iteration& iteration, std::uint64_t limit) const {
         const double room = static_cast<double>(limit) / (1 + settings_.uniform_share);
         const auto most = static_cast<std::uint64_t>(room / static_cast<double>(replicates()));
-        const std::uint64_t large =
-            std::bit_floor(std::max({large_step / replicates(), device_ ? 0 : iteration.points / 8,
-                                     std::uint64_t{1}})); // a device keeps the values of a step
+        // A device keeps the values of a step.
+        const std::uint64_t step = device_ ? std::min(large_step, device_->most_points()) : large_step;
+        const std::uint64_t large = std::bit_floor(
+            std::max({step / replicates(), device_ ? 0 : iteration.points / 8, std::uint64_t{1}}));
         const std::uint64_t start = std::max(first_points, iteration.length / iteration_growth);
         const std::uint64_t wanted = std::min(iteration.points == 0 ? start : iteration.points, large);
         // At the end of the budget the largest power of two that fits; a small remainder is not used.

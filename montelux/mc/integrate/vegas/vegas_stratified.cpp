@@ -118,6 +118,7 @@ class StratifiedVegas final : public VegasEstimator {
         plan(next, request);
         if (!run_pilot(next, request, used)) return StepOutcome::cancelled;
         const std::uint64_t points = iteration_size(next, request.max_evaluations - used);
+        if (points < least_iteration(next)) return StepOutcome::exhausted;
         sharpen(next.map, points);
         cubes.resize(std::clamp<std::uint64_t>(points / points_per_box, 1, most_boxes));
         const std::vector<std::uint32_t> counts = cubes.allocate(points, settings_.beta);
@@ -168,6 +169,13 @@ class StratifiedVegas final : public VegasEstimator {
         if (size + size / 4 > room) size = room;
         while (size > 2 && size + uniform_points(size) > limit) --size;
         return size;
+    }
+
+    // A remainder of fewer points is not used: it would hardly change the average, and the error of a few points is
+    // known too badly to be compared with the other iterations.
+    static std::uint64_t least_iteration(const VegasState& next) {
+        const auto counted = static_cast<std::uint64_t>(next.points);
+        return std::max(std::min<std::uint64_t>(64, counted / 4), counted / 50);
     }
 
     std::optional<IterationSum> sample(const VegasState& next, const Hypercubes& cubes,
