@@ -5,13 +5,13 @@
 #include <cstdint>
 #include <cstdio>
 #include <system_error>
-#include <unistd.h>
 
 #include "montelux/film/film.h"
 #include "montelux/film/film_layers.h"
 #include "montelux/film/spectral_buckets.h"
 #include "montelux/image/image_write.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/physical_memory.h"
 
 namespace montelux::app {
 
@@ -19,8 +19,7 @@ namespace {
 
 // Without this check the kernel would kill a process for memory, seconds or hours later.
 void check_memory(const FilmSettings& film, const FilmLayers& layers, bool with_checkpoints) {
-    auto pages = static_cast<double>(sysconf(_SC_PHYS_PAGES));
-    double there = pages * static_cast<double>(sysconf(_SC_PAGESIZE));
+    const double there = physical_memory();
     constexpr double copies = 2; // the picture, and its encoding
     const auto channels =
         static_cast<double>(layers.channels().size() + 6); // with those of slices and denoising
@@ -31,7 +30,7 @@ void check_memory(const FilmSettings& film, const FilmLayers& layers, bool with_
     needed += pixels * ((with_checkpoints ? 2 : 1) * (sizeof(Pixel) + sizeof(std::uint32_t) +
                                                       static_cast<double>(sizeof(double) * layers.sums())) +
                         channels * copies * sizeof(float));
-    if (pages <= 0 || needed <= there) return;
+    if (needed <= there) return;
     constexpr double gib = 1 << 30;
     char text[160];
     std::snprintf(text, sizeof text, "%d x %d pixels need %.1f GiB of memory; this machine has %.1f GiB",

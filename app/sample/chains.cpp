@@ -15,6 +15,7 @@ namespace montelux::app {
 namespace {
 
 constexpr int most_chains = 10000, most_walkers = 100000;
+constexpr std::uint64_t fewest_draws = 8;                      // of a chain
 constexpr std::uint64_t most_numbers = std::uint64_t{1} << 32; // of all states
 
 std::vector<std::vector<double>> read_starts(const SampleOptions& o, const NamedConstants& constants,
@@ -55,7 +56,14 @@ ChainOptions read_options(const SampleOptions& o, const NamedConstants& constant
     if (!o.thin.empty()) options.thin = whole_number(o.thin, "--thin", 1, 1'000'000'000);
     const auto sequences =
         static_cast<std::uint64_t>(options.chains) * static_cast<std::uint64_t>(walkers_of(options, n));
-    options.draws = whole_number(o.n, "--n", 8, most_numbers / (sequences * names.size()));
+    const std::uint64_t most_draws = most_numbers / (sequences * names.size());
+    if (most_draws < fewest_draws)
+        throw UsageError(o.walkers.empty() ? "--chains" : "--walkers",
+                         std::to_string(sequences) + " chains or walkers in all are too many for " +
+                             std::to_string(n) + (n == 1 ? " variable" : " variables") +
+                             "; expected at most " +
+                             std::to_string(most_numbers / (fewest_draws * names.size())));
+    options.draws = whole_number(o.n, "--n", fewest_draws, most_draws);
     if (!o.burn_in.empty()) options.burn_in = whole_number(o.burn_in, "--burn-in", 0, 1'000'000'000'000);
     options.seed = whole_number(o.seed, "--seed", 0, UINT64_MAX);
     options.starts = read_starts(o, constants, names.size());
@@ -67,6 +75,15 @@ ChainOptions read_options(const SampleOptions& o, const NamedConstants& constant
     options.names = names;
     options.cancel = &cancel_on_signals();
     return options;
+}
+
+// Tables and netCDF files have columns, or dimensions, of these names already.
+void check_names(const std::vector<std::string>& names) {
+    for (const std::string& name : names)
+        if (name == "chain" || name == "draw")
+            throw UsageError("--over",
+                             "the variable '" + name +
+                                 "' has the name of a column of what is written; expected another one");
 }
 
 void say_summary(const std::vector<std::string>& names, const ChainDraws& r, const ChainOptions& options) {
@@ -122,13 +139,17 @@ int run_chains(const SampleOptions& o) {
     const ChainOptions options = read_options(o, constants, variables.names);
     const auto threads = static_cast<int>(whole_number(o.threads, "--threads", 0, most_threads));
     const bool netcdf = is_netcdf(o);
-    if (netcdf) check_netcdf(variables.names);
+    check_names(variables.names);
+    if (netcdf) check_netcdf();
     if (!o.output.empty()) check_output(o.output);
     const ChainDraws draws = with_threads(threads, [&] {
         return sample_chains(Integrand::batch([&](const PointBatch& x, ValueBatch y) { formula(x, y); }),
                              variables.ranges, options);
     });
-    if (draws.cancelled) return exit_interrupted;
+    if (draws.cancelled) {
+        if (!o.quiet) std::fprintf(stderr, "montelux: interrupted; no draws were written\n");
+        return exit_interrupted;
+    }
     finish_on_signals();
     if (netcdf)
         write_netcdf(o.output, variables.names, draws);

@@ -1,6 +1,5 @@
 #include "app/sample/netcdf_file.h"
 
-#include "app/usage_error.h"
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -134,14 +133,7 @@ class NetcdfImage {
 
 } // namespace
 
-void check_netcdf(const std::vector<std::string>& names) {
-    for (const std::string& name : names)
-        if (name == "chain" || name == "draw")
-            throw UsageError("--over",
-                             "the variable '" + name +
-                                 "' has the name of a dimension of netCDF files; expected another one");
-    netcdf();
-}
+void check_netcdf() { netcdf(); }
 
 void write_netcdf(const std::string& path, const std::vector<std::string>& names, const ChainDraws& draws) {
     const NetcdfApi& nc = netcdf();

@@ -11,9 +11,8 @@ namespace montelux::app {
 // Names the file of libnetcdf, where the system does not find it.
 inline constexpr const char* netcdf_library_variable = "MONTELUX_NETCDF_LIBRARY";
 
-// Throws Error where libnetcdf, which is loaded while the program runs, cannot be, and UsageError for a variable that
-// has the name of a dimension.
-void check_netcdf(const std::vector<std::string>& names);
+// Throws Error where libnetcdf, which is loaded while the program runs, cannot be.
+void check_netcdf();
 
 // Dimensions `chain` and `draw` with their numbers as coordinates, and each variable over both. The file appears
 // complete or not at all; "" is the standard output.

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
@@ -90,7 +90,7 @@ def sample(
     thin: int = 1,
     seed: int = 0,
     starts: npt.ArrayLike | None = None,
-    names: Sequence[str] = (),
+    names: Iterable[str] = (),
     threads: int = 1,
     workers: int = 1,
     batch: bool = True,
@@ -118,8 +118,8 @@ def sample(
     The draws depend on the seed and not on `threads` or `workers`.
     """
     region = as_domain(domain)
-    if sampler not in _core.chain_samplers():
-        raise Error("sampler: " + unknown("sampler", sampler, _core.chain_samplers()))
+    if not isinstance(sampler, str) or sampler not in _core.chain_samplers():
+        raise Error("sampler: " + unknown("sampler", str(sampler), _core.chain_samplers()))
     for name, number, least, below in (
         ("n", n, 8, 2**40),
         ("chains", chains, 1, 10001),
@@ -132,10 +132,15 @@ def sample(
     ):
         if not (is_whole(number) and least <= number < below):
             raise Error(f"{name}: {number!r} was given; expected a whole number from {least} to {below - 1}")
-    if isinstance(names, str) or not all(isinstance(name, str) for name in names):
+    if isinstance(names, str) or not isinstance(names, Iterable):
         raise Error(f"names: {names!r} was given; expected a name for each variable, as ['mass', 'width']")
+    names = tuple(names)
+    if not all(isinstance(name, str) for name in names):
+        raise Error(f"names: {list(names)!r} was given; expected a name for each variable, as ['mass', 'width']")
     if len(set(names)) != len(names):
         raise Error(f"names: {list(names)!r} was given; expected names that differ")
+    if reserved := {"chain", "draw"} & set(names):
+        raise Error(f"names: {reserved.pop()!r} is the name of a dimension of the draws; expected another one")
     with prepared(log_density, region, batch, False, array, int(threads), int(workers), 0) as integrand:
         made = _core.sample_chains(
             integrand.function,
@@ -162,6 +167,8 @@ def _starts(starts: npt.ArrayLike | None, dimensions: int) -> list[list[float]]:
         points = np.asarray(starts, dtype=float)
     except (TypeError, ValueError):
         raise Error(f"starts: {starts!r} was given; expected numbers, of shape (d,) or (chains, d)") from None
+    if points.size == 0:
+        raise Error("starts: no point was given; expected shape (d,) or (chains, d), or None")
     if points.ndim == 0 or (points.ndim == 1 and dimensions == 1):
         points = points.reshape(-1, 1)
     points = np.atleast_2d(points)

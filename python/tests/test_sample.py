@@ -75,6 +75,11 @@ def test_c_functions_as_targets_of_trained_densities():
         density.samples(one, 10)
 
 
+def test_names_may_come_from_a_generator():
+    draws = montelux.sample(normal, [LINE, LINE], 8, names=(name for name in "ab"), burn_in=10)
+    assert draws.names == ("a", "b")
+
+
 def test_chains_that_disagree_say_so():
     def two(x):
         return np.logaddexp(-0.5 * (x - 20) ** 2, -0.5 * (x + 20) ** 2)
@@ -97,6 +102,11 @@ def test_mistakes_get_a_sentence():
     refused("names: 'ab' was given", normal, [LINE, LINE], names="ab")
     refused("expected names that differ", normal, [LINE, LINE], names=["a", "a"])
     refused("a name for each of 2 variables", normal, [LINE, LINE], names=["a"])
+    refused("names: 'draw' is the name of a dimension", normal, [LINE, LINE], names=["a", "draw"])
+    refused("names: None was given", normal, [LINE, LINE], names=None)
+    refused("sampler", normal, [LINE, LINE], sampler=None)
+    refused("starts: no point was given", normal, [LINE, LINE], starts=[])
+    refused(r"GiB of memory; this machine has .*--thin", normal, [LINE, LINE], 10**11)
     refused("the density is zero at all of 1000 points", lambda x: np.full(len(x), -np.inf), (0, 1))
     refused("expected a box of ranges", normal, montelux.Domain.ball([0, 0]))
     refused("expected a function", 3, (0, 1))

@@ -93,7 +93,14 @@ expect 2 "3 starts were given for 4 chains" sample -x --log --over x=0:1 --start
 # netCDF, if its library is installed.
 expect 2 "such files hold chains" sample --set sobol --format netcdf
 expect 2 "such files hold chains" sample --set sobol -o points.nc
-expect 2 "has the name of a dimension" sample -draw --log --over draw=0:1 -o chains.nc
+expect 2 "has the name of a column" sample -draw --log --over draw=0:1 -o chains.nc
+expect 2 "has the name of a column" sample -chain --log --over chain=0:1
+expect 2 "1000000000 chains or walkers in all are too many for 1 variable; expected at most 536870912" \
+    sample -x --log --over x=0:1 --sampler slice --walkers 100000 --chains 10000
+expect 1 "lie in a subspace" sample -x^2-y^2 --log --over x,y=-1:1 --sampler slice --chains 1 --walkers 4 \
+    --start 0,0.1 --start 0,0.2 --start 0,0.3 --start 0,0.4
+"$montelux" sample '0-(x*1e9)^2' --log --over x=-1:1 --start 0 --burn-in 0 --n 200 2>err >out
+grep -q "the draws of 'x' are all equal: no chain moved" err || fail "chains at rest: $(cat err)"
 MONTELUX_NETCDF_LIBRARY=/no/such/library.so "$montelux" sample -x --log --over x=0:1 -o chains.nc >out 2>err &&
     fail "netCDF without its library"
 grep -q "netCDF cannot be loaded from '/no/such/library.so'" err || fail "netCDF: $(cat err)"

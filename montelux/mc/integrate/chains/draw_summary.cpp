@@ -26,20 +26,18 @@ std::vector<double> split_in_halves(std::span<const double> values, std::size_t 
     return parts;
 }
 
-// Equation 14 of Vehtari et al.: normal scores of average ranks.
-std::vector<double> rank_normalised(std::span<const double> values) {
+// Equation 14 of Vehtari et al.: normal scores of average ranks, in place of the values.
+void normalise_ranks(std::span<double> values) {
     std::vector<std::size_t> order(values.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::sort(order.begin(), order.end(),
               [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
-    std::vector<double> scores(values.size());
     for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
         for (end = begin; end < order.size() && values[order[end]] == values[order[begin]];) ++end;
         const double rank = 0.5 * static_cast<double>(begin + 1 + end);
         const double score = normal_quantile((rank - 0.375) / (static_cast<double>(values.size()) + 0.25));
-        for (std::size_t i = begin; i < end; ++i) scores[order[i]] = score;
+        for (std::size_t i = begin; i < end; ++i) values[order[i]] = score;
     }
-    return scores;
 }
 
 // The moments of each of `parts` equally long parts: their means, and the mean of their variances.
@@ -68,7 +66,6 @@ struct PartMoments {
 
 // The means over the walkers of each ensemble, part by part; `parts` holds two halves of each walker.
 std::vector<double> ensemble_means(std::span<const double> values, std::size_t parts, std::size_t walkers) {
-    if (walkers == 1) return {values.begin(), values.end()};
     const std::size_t length = values.size() / parts, ensembles = parts / 2 / walkers;
     std::vector<double> means(2 * ensembles * length, 0.0);
     for (std::size_t p = 0; p < parts; ++p) {
@@ -84,14 +81,16 @@ std::vector<double> ensemble_means(std::span<const double> values, std::size_t p
 double effective_size(std::span<const double> values, std::size_t parts, std::size_t walkers) {
     const std::size_t length = values.size() / parts;
     const double draws = static_cast<double>(values.size());
-    const std::vector<double> series = ensemble_means(values, parts, walkers);
+    std::vector<double> means;
+    if (walkers > 1) means = ensemble_means(values, parts, walkers);
+    const std::span<const double> series = walkers > 1 ? means : values;
     const std::size_t count = parts / walkers;
     const PartMoments moments(series, count);
     const double variance = moments.variance(length);
     if (!(variance > 0)) return draws;
     std::vector<double> covariances(length, 0.0);
     for (std::size_t p = 0; p < count; ++p) {
-        const std::vector<double> own = autocovariance(std::span(series).subspan(p * length, length));
+        const std::vector<double> own = autocovariance(series.subspan(p * length, length));
         for (std::size_t k = 0; k < length; ++k) covariances[k] += own[k] / static_cast<double>(count);
     }
     auto correlation = [&](std::size_t lag) {
@@ -129,30 +128,35 @@ DrawSummary summarize_draws(std::span<const double> values, std::size_t chains, 
     for (double v : values) all.add(v);
     summary.mean = all.mean();
     summary.standard_deviation = all.standard_deviation();
-    if (values.size() < fewest * chains) {
+    const auto [lowest, highest] = std::minmax_element(values.begin(), values.end());
+    if (values.size() < fewest * chains || *lowest == *highest) {
         summary.standard_error = summary.r_hat = std::numeric_limits<double>::infinity();
         return summary;
     }
+    // `work` is all the memory that is taken beside the halves and the order of ranks: chains may be long.
     const std::vector<double> split = split_in_halves(values, chains);
     const std::size_t parts = 2 * chains, length = split.size() / parts;
-    const std::vector<double> scores = rank_normalised(split);
-    std::vector<double> sorted = split;
-    std::sort(sorted.begin(), sorted.end());
-    const double median = quantile_of(sorted, 0.5);
-    std::vector<double> folded = split;
-    for (double& v : folded) v = std::abs(v - median);
-    summary.r_hat = std::max(PartMoments(scores, parts).r_hat(length),
-                             PartMoments(rank_normalised(folded), parts).r_hat(length));
-    summary.bulk_effective_size = effective_size(scores, parts, walkers);
-    sorted.assign(values.begin(), values.end());
-    std::sort(sorted.begin(), sorted.end());
+    std::vector<double> work(values.begin(), values.end());
+    std::sort(work.begin(), work.end());
+    const double low = quantile_of(work, 0.05), high = quantile_of(work, 0.95);
+    work = split;
+    std::sort(work.begin(), work.end());
+    const double median = quantile_of(work, 0.5);
+    auto transform = [&](auto function) {
+        std::transform(split.begin(), split.end(), work.begin(), function);
+    };
+    transform([&](double v) { return std::abs(v - median); });
+    normalise_ranks(work);
+    const double folded = PartMoments(work, parts).r_hat(length);
+    work = split;
+    normalise_ranks(work);
+    summary.r_hat = std::max(PartMoments(work, parts).r_hat(length), folded);
+    summary.bulk_effective_size = effective_size(work, parts, walkers);
     summary.tail_effective_size = std::numeric_limits<double>::infinity();
-    for (double probability : {0.05, 0.95}) {
-        const double quantile = quantile_of(sorted, probability);
-        std::vector<double> below = split;
-        for (double& v : below) v = v <= quantile ? 1 : 0;
+    for (double quantile : {low, high}) {
+        transform([&](double v) { return v <= quantile ? 1.0 : 0.0; });
         summary.tail_effective_size =
-            std::min(summary.tail_effective_size, effective_size(below, parts, walkers));
+            std::min(summary.tail_effective_size, effective_size(work, parts, walkers));
     }
     summary.standard_error = summary.standard_deviation / std::sqrt(effective_size(split, parts, walkers));
     return summary;

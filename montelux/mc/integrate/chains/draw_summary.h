@@ -12,7 +12,8 @@ struct DrawSummary {
     double mean = 0, standard_error = 0;
     double standard_deviation = 0; // of a single draw
     // The larger of the split R-hats of rank-normalised draws and of their rank-normalised distances from the median;
-    // 1 when halves of chains agree as draws of one density do. Infinite below eight draws of a chain.
+    // 1 when halves of chains agree as draws of one density do. Infinite, as the error is, below eight draws of a chain
+    // and where all draws are equal: chains that never moved tell nothing.
     double r_hat = 1;
     // As many independent draws are worth the same, for the centre of the distribution (of rank-normalised draws) and
     // for its 5 % and 95 % quantiles (the smaller of the two).

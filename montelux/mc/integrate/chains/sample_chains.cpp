@@ -8,6 +8,7 @@
 #include "montelux/mc/integrate/chains/walker_ensemble.h"
 #include "montelux/mc/integrate/metropolis/metropolis_chain.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/physical_memory.h"
 #include "montelux/mc/random/hash.h"
 
 namespace montelux {
@@ -36,6 +37,28 @@ void expect_option(bool good, const std::string& what) {
     if (!good) throw Error("chains", what);
 }
 
+// Before hours of sampling, not after them: the states, and what starts and diagnostics take beside them.
+void expect_memory(const ChainOptions& options, std::uint64_t sequences, std::size_t walkers,
+                   std::size_t dimensions) {
+    const auto d = static_cast<double>(dimensions), threads = static_cast<double>(thread_count());
+    const double column = static_cast<double>(sequences * options.draws);
+    // Of a variable: its values, their halves, their ranks and a working copy, and a chain's Fourier transform.
+    const double diagnostics = (4 + 4 / static_cast<double>(sequences)) * column * std::min(threads, d);
+    // Of an ensemble: random points of the unit cube and of the domain, four for each walker.
+    const double starts = 12 * static_cast<double>(walkers) * d * std::min(threads, 1.0 * options.chains);
+    const double needed = sizeof(double) * (column * d + std::max(diagnostics, starts));
+    if (needed <= physical_memory()) return;
+    constexpr double gib = 1 << 30;
+    char text[256];
+    std::snprintf(
+        text, sizeof text,
+        "%llu draws of %llu chains or walkers in %zu variables need %.1f GiB of memory; this machine "
+        "has %.1f GiB; expected fewer draws, further apart (--thin, thin), or fewer chains",
+        static_cast<unsigned long long>(options.draws), static_cast<unsigned long long>(sequences),
+        dimensions, needed / gib, physical_memory() / gib);
+    throw Error("chains", text);
+}
+
 ChainPlan planned(const Integrand& log_density, const Domain& domain, const ChainOptions& options) {
     expect_option(!domain.ranges().empty(),
                   "expected a box of ranges as domain, got " + domain.description());
@@ -62,6 +85,11 @@ ChainPlan planned(const Integrand& log_density, const Domain& domain, const Chai
     const std::uint64_t sequences = plan.chains() * plan.walkers;
     expect_option(options.draws <= (std::uint64_t{1} << 40) / sequences / plan.dimensions,
                   "all draws together have more than 2^40 numbers");
+    constexpr std::uint64_t most_states = std::uint64_t{1} << 62;
+    expect_option(
+        options.burn_in <= most_states && options.thin <= most_states / options.draws,
+        "a chain has more than 2^62 states; expected fewer draws, or a smaller thinning or burn-in");
+    expect_memory(options, sequences, plan.walkers, plan.dimensions);
     const std::size_t starts = options.starts.size();
     expect_option(starts <= 1 || starts == plan.chains() || starts == sequences,
                   std::to_string(starts) + " starts were given for " + std::to_string(plan.chains()) +
@@ -141,6 +169,8 @@ void run_ensembles(const ChainPlan& plan, ChainDraws& result) {
             const auto c = static_cast<std::size_t>(chain);
             LogDensityCalls density = plan.calls();
             std::vector<double> starts = plan.starts(density, c);
+            expect_spanning_starts(starts, plan.dimensions, move == EnsembleMove::slice,
+                                   static_cast<std::uint32_t>(c));
             WalkerEnsemble ensemble(move, density, std::move(starts), key, static_cast<std::uint32_t>(c));
             const std::uint64_t steps = o.burn_in + o.draws * o.thin;
             for (std::uint64_t t = 0; t < steps; ++t) {
@@ -194,7 +224,15 @@ void add_warnings(const ChainPlan& plan, ChainDraws& result) {
     auto size = [&](std::size_t k) {
         return std::min(result.variables[k].bulk_effective_size, result.variables[k].tail_effective_size);
     };
+    std::size_t constant = 0, first_constant = 0, varied = 0;
     for (std::size_t k = 0; k < plan.dimensions; ++k) {
+        const DrawSummary& summary = result.variables[k];
+        if (summary.standard_deviation == 0 &&
+            std::isinf(summary.standard_error)) { // has a sentence of its own
+            if (constant++ == 0) first_constant = k;
+            continue;
+        }
+        if (varied++ == 0) most = fewest = k;
         if (!(result.variables[k].r_hat <= converged_r_hat)) ++disagree;
         if (!(size(k) >= expected)) ++few;
         if (result.variables[k].r_hat > result.variables[most].r_hat) most = k;
@@ -210,6 +248,9 @@ void add_warnings(const ChainPlan& plan, ChainDraws& result) {
                  plan.names[k].c_str());
             break;
         }
+    if (constant > 0)
+        warn("the draws of '%.40s' are all equal: no chain moved%s", plan.names[first_constant].c_str(),
+             others(constant).c_str());
     if (disagree > 0)
         warn("the chains disagree: R-hat of '%.40s' is %.3f, expected at most 1.01%s",
              plan.names[most].c_str(), result.variables[most].r_hat, others(disagree).c_str());

@@ -67,8 +67,10 @@ TEST(DrawSummary, WalkersThatMoveTogetherAreWorthOne) {
 TEST(DrawSummary, ConstantAndShortChainsHaveNoFalsePrecision) {
     const DrawSummary constant = summarize_draws(std::vector<double>(40, 2.5), 4);
     EXPECT_EQ(constant.mean, 2.5);
-    EXPECT_EQ(constant.standard_error, 0);
-    EXPECT_EQ(constant.r_hat, 1);
+    EXPECT_TRUE(std::isinf(constant.standard_error));
+    EXPECT_TRUE(std::isinf(constant.r_hat));
+    EXPECT_EQ(constant.bulk_effective_size, 0);
+    EXPECT_EQ(constant.tail_effective_size, 0);
     const DrawSummary brief = summarize_draws(series(4, 7, 0, 0), 4);
     EXPECT_TRUE(std::isinf(brief.standard_error));
     EXPECT_TRUE(std::isinf(brief.r_hat));

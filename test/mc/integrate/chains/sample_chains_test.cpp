@@ -171,7 +171,7 @@ TEST(SampleChains, EnsemblesAreInvariantUnderAffineMaps) {
         plain.walkers = 6;
         plain.draws = 100;
         plain.burn_in = 20;
-        for (int w = 0; w < 6; ++w) plain.starts.push_back({0.1 * w, 0.2 * (w % 3) - 0.1});
+        for (int w = 0; w < 6; ++w) plain.starts.push_back({0.1 * w, 0.2 * (w * w % 5) - 0.1});
         ChainOptions mapped = plain;
         for (auto& start : mapped.starts) start = {1024 * start[0], start[1] / 64};
         const Range line{-no_bound, no_bound};
@@ -249,6 +249,8 @@ TEST(SampleChains, SenselessOptionsAreRefused) {
             "3 walkers were given for 2 variables; expected 4");
     refused({.draws = 7}, "at least 8 draws");
     refused({.thin = 0}, "thinning");
+    refused({.draws = std::uint64_t{1} << 30, .thin = std::uint64_t{1} << 60}, "more than 2^62 states");
+    refused({.draws = std::uint64_t{1} << 37}, "GiB of memory; this machine has");
     refused({.starts = {{0, 0}, {1, 1}}}, "2 starts were given for 4 chains");
     refused({.starts = {{0}}}, "1 numbers were given as a start of 2 variables");
     refused({.names = {"a"}}, "expected a name for each");
