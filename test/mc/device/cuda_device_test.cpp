@@ -26,6 +26,7 @@ class CudaDeviceTest : public testing::Test {
         // Its name within is libcuda.so.1, so that the device finds it from here on.
         ASSERT_TRUE(SharedLibrary::open(MONTELUX_FAKE_CUDA_LIBRARY, reason)) << reason;
         loaded = true;
+        ::setenv("MONTELUX_STAND_IN_DRIVER", "1", 1); // NvrtcTest asks
         ::setenv("MONTELUX_NVRTC", MONTELUX_FAKE_CUDA_LIBRARY, 1);
     }
     void TearDown() override {
