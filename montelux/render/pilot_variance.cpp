@@ -6,7 +6,7 @@
 namespace montelux {
 namespace {
 
-constexpr double significant = 3;     // errors of a difference
+constexpr double significant = 3; // errors of a difference
 // Of the mean over all tiles: relMSE of pictures of mean 0.2 with its usual epsilon of 0.01.
 constexpr double darkest_share = 0.5;
 

@@ -22,7 +22,7 @@ enum class IntegratorKind : std::uint8_t {
     bidirectional, // from the camera and from lights, joined in all ways (transport/bidirectional_integrator.h)
     light_tracing, // from lights, joined to the camera; an oracle for the former
     metropolis,    // Markov chains over the random numbers of paths from the camera (docs/metropolis.md)
-    automatic,     // path, bidirectional or metropolis; decided before the render (render/integrator_choice.h)
+    automatic, // path, bidirectional or metropolis; decided before the render (render/integrator_choice.h)
 };
 // Whether paths start at lights, too.
 inline constexpr bool traces_light(IntegratorKind kind) {

@@ -305,11 +305,10 @@ void bind_views(nb::module_& m) {
             s.max_depth = static_cast<int>(whole_number_of(v, 0, 1'000'000, what));
         },
         "Scattering events of a path at most.");
-    choice(
-        integrator, "method", &IntegratorSettings::method, integrator_kinds,
-        "How paths are found: from the camera ('path'), from the camera and from lights "
-        "('bidirectional'), from lights alone ('light-tracing'), by Markov chains that stay near bright "
-        "paths ('metropolis'), or as a pilot chooses ('auto').");
+    choice(integrator, "method", &IntegratorSettings::method, integrator_kinds,
+           "How paths are found: from the camera ('path'), from the camera and from lights "
+           "('bidirectional'), from lights alone ('light-tracing'), by Markov chains that stay near bright "
+           "paths ('metropolis'), or as a pilot chooses ('auto').");
     number(
         integrator, "large_step_probability", &IntegratorSettings::large_step_probability,
         [](double x) { return x >= 0 && x <= 1; }, "a number from 0 to 1",

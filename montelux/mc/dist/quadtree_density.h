@@ -20,7 +20,7 @@ struct SquareSample {
 };
 
 struct QuadtreeSettings {
-    float split_share = 0.01f;       // a square with more of the mass is split
+    float split_share = 0.01f;        // a square with more of the mass is split
     std::uint32_t split_samples = 16; // and one with fewer samples is not
     // A square's quadrants count as even with the weight of so many samples: those without a sample may have been missed
     // by chance.
