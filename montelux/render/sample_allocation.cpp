@@ -78,8 +78,7 @@ std::vector<std::uint32_t> missing_to_trust(const Film& film, const SampleOrder&
     std::vector<std::uint32_t> target_samples(pixels.size());
     std::uint64_t total = 0;
     for (std::size_t i = 0; i < pixels.size(); ++i) {
-        target_samples[i] =
-            static_cast<std::uint32_t>(std::max<std::uint64_t>(pixels[i].samples(), trusted));
+        target_samples[i] = static_cast<std::uint32_t>(std::max<std::uint64_t>(pixels[i].samples(), trusted));
         total += target_samples[i];
     }
     return total <= order.share() * pixels.size() ? target_samples : std::vector<std::uint32_t>();

@@ -1,7 +1,6 @@
 #include <cstdint>
-#include <limits>
-
 #include <gtest/gtest.h>
+#include <limits>
 
 #include "montelux/render/render_forecast.h"
 

@@ -165,7 +165,8 @@ TEST(SampleAllocation, QuantilesThatAreMetGetTheSamplesToTrustThem) {
     const auto next = [&](int samples, double deviation, const SamplerSettings& sampler) {
         RenderState state({.width = width, .height = width, .crop = {0, 0, width, width}});
         state.film = film_with(std::vector<double>(width * width, deviation), width, samples, 3);
-        for (int k = 0; k < 80; ++k) state.film.pixels()[5].add_sample({.radiance = {10, 10, 10}, .albedo = {}, .normal = {}});
+        for (int k = 0; k < 80; ++k)
+            state.film.pixels()[5].add_sample({.radiance = {10, 10, 10}, .albedo = {}, .normal = {}});
         state.target_samples.assign(width * width, static_cast<std::uint32_t>(samples));
         return next_target_samples(state, sampler, target);
     };

@@ -33,8 +33,8 @@ std::uint64_t MixtureDensity::balanced_points() const {
     return static_cast<std::uint64_t>(units / common);
 }
 
-void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x,
-                            std::vector<double>& density, std::vector<std::size_t>* inside) const {
+void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x, std::vector<double>& density,
+                            std::vector<std::size_t>* inside) const {
     const std::size_t count = u.count();
     if (channel < first_gaussian()) {
         if (inside != nullptr) {

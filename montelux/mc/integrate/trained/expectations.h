@@ -19,7 +19,7 @@ struct Expectations {
     double log_reference = 0;
     std::uint64_t draws = 0, evaluations = 0;
     NonFiniteCount non_finite; // also points that count in Z, but have an observable that is not finite
-    bool cancelled = false; // nothing is known then
+    bool cancelled = false;    // nothing is known then
     std::vector<std::string> warnings;
 
     int observables() const { return static_cast<int>(integral.size()) - 1; }
