@@ -236,11 +236,12 @@ void declare(CLI::App& c, IntegrateOptions& o) {
          "Draw a variable from a density that is proportional to this formula, for example x=exp(-5*x)",
          "NAME=FORMULA");
     text("--method", o.method, "How: " + joined(Method::names()) + ". Default: " + Method().name(), "NAME");
-    text("--device", o.device,
-         "Draw and evaluate the points on a device: cuda, a GPU, or emulated, to check its code. For "
-         "formulas and "
-         "--source (C or CUDA C++), and the methods basic, quasi, vegas and vegas_sobol",
-         "NAME");
+    text(
+        "--device", o.device,
+        "Draw and evaluate the points on a device: cuda, a GPU, or emulated, to check its code. For formulas "
+        "and --source (C or CUDA C++), and the method " +
+            Method::device_names(),
+        "NAME");
     text("--relative-error", o.relative_error,
          "Stop at this standard error relative to the value, for example 1e-3 or 0.1%", "E");
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
@@ -301,8 +302,8 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     Method method = make_method(o.method);
     if (!o.device.empty() && !method.on_device())
         throw UsageError("--method", "the method '" + method.name() + "' does not run on a device" +
-                                         (o.method.empty() ? ", and is the default" : "") +
-                                         "; expected basic, quasi, vegas or vegas_sobol");
+                                         (o.method.empty() ? ", and is the default" : "") + "; expected " +
+                                         Method::device_names());
     NamedIntegrand integrand = make_integrand(o, variables.names, constants);
 
     Budget budget;

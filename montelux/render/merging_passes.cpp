@@ -8,6 +8,7 @@
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/parallel/cpu_time.h"
+#include "montelux/render/splat_pass.h"
 
 namespace montelux {
 
@@ -154,6 +155,7 @@ void MergingPasses::prepare(std::uint64_t index, RenderReport& report, std::mute
 }
 
 void close_bias(RenderState& state, std::uint64_t samples) {
+    check_sums(state.bias->open());
     state.bias->close_pass(static_cast<double>(samples) / static_cast<double>(state.film.pixels().size()));
     const MergingBias::Estimate bias = state.bias->estimate();
     MergingSummary& merging = state.report.merging;

@@ -202,9 +202,7 @@ class RenderLoop {
     // The splats of a pass become part of its replicates.
     void close_pass() {
         SplatFilm& splats = *state_.splats;
-        if (splats.overflows() > 0 || splats.bad() > 0)
-            throw Error("film",
-                        "the sums of light that is brought to a pixel are too large; lower the exposure");
+        check_sums(splats);
         const std::uint64_t samples = open_samples(state_.film);
         if (samples == 0) return; // closed before the render was interrupted
         LiveFilm* const live = control_.live;

@@ -2,7 +2,14 @@
 
 #include <algorithm>
 
+#include "montelux/mc/math/error.h"
+
 namespace montelux {
+
+void check_sums(const SplatFilm& splats) {
+    if (splats.overflows() > 0 || splats.bad() > 0)
+        throw Error("film", "the sums of light that is brought to a pixel are too large; lower the exposure");
+}
 
 void add_splats(Film& film, const SplatFilm& splats, const PixelBounds& tile, std::uint64_t samples) {
     if (samples == 0) return;

@@ -8,6 +8,9 @@
 
 namespace montelux {
 
+// Throws Error where the sums have lost light.
+void check_sums(const SplatFilm& splats);
+
 // Adds to each pixel's open replicate the splats of the pass, divided by the number of its samples, each of which has
 // traced a light path. Splats reach the edge of the film from beyond it, as samples do.
 void add_splats(Film& film, const SplatFilm& splats, const PixelBounds& tile, std::uint64_t samples);

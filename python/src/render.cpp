@@ -3,6 +3,8 @@
 #include "python/src/render_job.h"
 #include "python/src/scene_object.h"
 #include <algorithm>
+#include <chrono>
+#include <future>
 #include <string>
 #include <utility>
 #include <vector>
@@ -25,6 +27,22 @@ void check_scene(const SceneHolder& scene) {
         throw Error("render",
                     "the scene has no camera; set scene.camera, for example to PerspectiveCamera(fov=40)");
     check_materials(scene.description->scene);
+}
+
+// Without Python's lock, on another thread, so that Ctrl-C is seen and cancels it.
+template <typename Work>
+void run_interruptibly(const Work& work) {
+    CancelFlag cancel;
+    std::future<void> done = std::async(std::launch::async, [&] { work(cancel); });
+    while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
+        nb::gil_scoped_acquire lock;
+        if (!cancel.requested() && PyErr_CheckSignals() != 0) cancel.request();
+    }
+    if (cancel.requested()) {
+        nb::gil_scoped_acquire lock;
+        throw nb::python_error();
+    }
+    done.get();
 }
 
 std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::uint32_t> spp,
@@ -66,7 +84,11 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
             t.adaptive = adapts(kind);
             return t;
         };
-        with_threads(threads, [&] { decide_integrator(*own, settings, {.target = target_of}); });
+        run_interruptibly([&](const CancelFlag& cancel) {
+            with_threads(threads, [&] {
+                decide_integrator(*own, settings, {.target = target_of, .cancel = &cancel});
+            });
+        });
         description = std::move(own);
     }
     return std::make_unique<RenderJob>(std::move(description), std::move(settings), threads, denoise, view);

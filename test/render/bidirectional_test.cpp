@@ -1,6 +1,7 @@
 // Bidirectional path tracing as a render: known answers, the errors of its pixels, and that the picture depends on scene
 // and seed alone.
 #include "test/render/mixed_scene.h"
+#include "test/render/render_in_pieces.h"
 #include "test/render/seed_means.h"
 #include "test/sanitized.h"
 #include "test/temporary_folder.h"
@@ -11,8 +12,6 @@
 #include <vector>
 
 #include "montelux/mc/math/error.h"
-#include "montelux/mc/random/hash.h"
-#include "montelux/render/checkpoint.h"
 #include "montelux/render/render_session.h"
 #include "montelux/render/sample_record.h"
 #include "montelux/render/splat_pass.h"
@@ -113,36 +112,10 @@ TEST(BidirectionalPictures, ResumedRendersHaveTheSameBits) {
         b.description.sampler.spp = under_sanitizers ? 6 : 28;
         RenderState whole(b.description);
         Renderer(b.description).render(whole);
-        int stops = 0, within_passes = 0;
-        for (bool ended = false; !ended; ++stops) {
-            RenderState state(b.description);
-            SceneDescription description = b.description;
-            if (stops > 0) {
-                RestoredRender restored = load_checkpoint(path, description, {});
-                description.sampler.replicate_points = restored.replicate_points;
-                state = std::move(restored.state);
-                within_passes += open_samples(state.film) > 0;
-            }
-            const Renderer renderer(description);
-            CancelFlag cancel;
-            const std::uint64_t begin = state.report.samples,
-                                more = 1 + hash_key(7, stops) % (whole.report.samples / 4);
-            RenderControl control;
-            control.cancel = &cancel;
-            control.checkpoint_seconds = 0; // after every tile: where it stops depends on samples alone
-            control.checkpoint = [&](const RenderState& s) {
-                save_checkpoint(path, renderer, s);
-                if (s.report.samples >= begin + more) cancel.request();
-            };
-            with_threads(2, [&] { renderer.render(state, control); }); // more may end a pass at once
-            ended = !state.report.cancelled();
-            if (ended) {
-                EXPECT_EQ(differing(state.film, whole.film), 0) << int(kind);
-            }
-            ASSERT_LT(stops, 1000);
-        }
-        EXPECT_GT(stops, 2) << int(kind);
-        EXPECT_GT(within_passes, 0) << int(kind);
+        const Pieces pieces = render_in_pieces(b.description, path, whole.report.samples);
+        EXPECT_EQ(differing(pieces.state.film, whole.film), 0) << int(kind);
+        EXPECT_GT(pieces.count, 2) << int(kind);
+        EXPECT_GT(pieces.begun_within_a_pass, 0) << int(kind);
     }
 }
 

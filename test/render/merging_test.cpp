@@ -2,6 +2,7 @@
 // depends on scene and seed alone.
 #include "test/render/agreement.h"
 #include "test/render/mixed_scene.h"
+#include "test/render/render_in_pieces.h"
 #include "test/sanitized.h"
 #include "test/temporary_folder.h"
 #include <cmath>
@@ -10,7 +11,6 @@
 #include <numbers>
 
 #include "montelux/mc/math/error.h"
-#include "montelux/mc/random/hash.h"
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/merging_bias.h"
 #include "montelux/render/render_session.h"
@@ -269,36 +269,11 @@ TEST(MergingPictures, ResumedRendersHaveTheSameBits) {
         b.description.sampler.spp = under_sanitizers ? 6 : 12;
         RenderState whole(b.description);
         Renderer(b.description).render(whole);
-        int stops = 0, within_passes = 0;
-        for (bool ended = false; !ended; ++stops) {
-            RenderState state(b.description);
-            SceneDescription description = b.description;
-            if (stops > 0) {
-                RestoredRender restored = load_checkpoint(path, description, {});
-                description.sampler.replicate_points = restored.replicate_points;
-                state = std::move(restored.state);
-                within_passes += open_samples(state.film) > 0;
-            }
-            const Renderer renderer(description);
-            CancelFlag cancel;
-            const std::uint64_t begin = state.report.samples,
-                                more = 1 + hash_key(7, stops) % (whole.report.samples / 4);
-            RenderControl control;
-            control.cancel = &cancel;
-            control.checkpoint_seconds = 0; // after every tile
-            control.checkpoint = [&](const RenderState& s) {
-                save_checkpoint(path, renderer, s);
-                if (s.report.samples >= begin + more) cancel.request();
-            };
-            with_threads(2, [&] { renderer.render(state, control); });
-            ended = !state.report.cancelled();
-            if (ended) {
-                EXPECT_EQ(differing(state.film, whole.film), 0) << int(kind);
-                EXPECT_TRUE(same(state.report.merging, whole.report.merging)) << int(kind);
-            }
-        }
-        EXPECT_GT(stops, 2);
-        EXPECT_GT(within_passes, 0);
+        const Pieces pieces = render_in_pieces(b.description, path, whole.report.samples);
+        EXPECT_EQ(differing(pieces.state.film, whole.film), 0) << int(kind);
+        EXPECT_TRUE(same(pieces.state.report.merging, whole.report.merging)) << int(kind);
+        EXPECT_GT(pieces.count, 2);
+        EXPECT_GT(pieces.begun_within_a_pass, 0);
         // A render that merges otherwise is another one.
         SceneDescription other = b.description;
         other.integrator.merging->radius = 0.5f;

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <vector>
 
 #include "montelux/mc/integrate/adaptive/adaptive.h"
 #include "montelux/mc/integrate/auto.h"
@@ -59,11 +61,20 @@ Method Method::named(std::string_view name) {
 
 std::span<const std::string_view> Method::names() { return method_names; }
 
+std::string Method::device_names() {
+    std::vector<std::string_view> able;
+    std::ranges::copy_if(method_names, std::back_inserter(able),
+                         [](std::string_view name) { return named(name).on_device(); });
+    std::string text;
+    for (std::size_t i = 0; i < able.size(); ++i)
+        text += (i == 0 ? "" : i + 1 == able.size() ? " or " : ", ") + std::string(able[i]);
+    return text;
+}
+
 std::unique_ptr<Estimator> Method::estimator(const Problem& problem) const {
     if (!on_device_ && problem.evaluator.integrand().on_device().function)
         throw Error("integrate",
-                    "the method '" + name_ +
-                        "' does not run on a device; expected basic, quasi, vegas or vegas_sobol");
+                    "the method '" + name_ + "' does not run on a device; expected " + device_names());
     return make_(problem);
 }
 

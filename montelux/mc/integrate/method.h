@@ -35,6 +35,8 @@ class Method {
     static Method named(std::string_view name);
     // The names that `named` knows.
     static std::span<const std::string_view> names();
+    // Of those whose points can be drawn on a device, for messages: "a, b or c".
+    static std::string device_names();
 
     const std::string& name() const { return name_; }
     // Can its points be drawn on a device?
