@@ -320,6 +320,29 @@ def test_a_viewed_render_is_stopped(scene):
     assert render.stop().stopped_by == "cancelled"
 
 
+INTERRUPTED_PILOT = """
+import os, signal, sys, threading, time
+import montelux
+signal.signal(signal.SIGINT, signal.default_int_handler)
+scene = montelux.parse(sys.stdin.read())
+scene.film.resolution = 2400, 1800
+scene.integrator.method = "auto"
+begin = time.monotonic()
+threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
+try:
+    scene.render(spp=1 << 24)
+except KeyboardInterrupt:
+    print(time.monotonic() - begin)
+"""
+
+
+def test_ctrl_c_ends_a_pilot():  # which would take many seconds
+    done = subprocess.run(
+        [sys.executable, "-c", INTERRUPTED_PILOT], input=TEXT, capture_output=True, text=True, timeout=120
+    )
+    assert done.stderr == "" and float(done.stdout) < 4
+
+
 def test_an_integrator_is_chosen_by_a_pilot(scene):
     scene.film.resolution = 64, 48
     scene.sampler.spp = 256
