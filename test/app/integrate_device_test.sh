@@ -53,8 +53,8 @@ wait $job && fail "SIGTERM while the emulation compiles: exit code 0"
 
 # Mistakes.
 expect 2 "there is no device 'gpu'; expected one of cuda, emulated" integrate x --over x=0:1 --method basic --device gpu
-expect 2 "the method 'auto' does not run on a device, and is the default; expected basic" integrate x --over x=0:1 --device emulated
-expect 2 "the method 'adaptive' does not run on a device; expected basic" integrate x --over x=0:1 --method adaptive --device emulated
+expect 2 "the method 'auto' does not run on a device, and is the default; expected vegas, vegas_sobol, quasi or basic" integrate x --over x=0:1 --device emulated
+expect 2 "the method 'adaptive' does not run on a device; expected vegas, vegas_sobol, quasi or basic" integrate x --over x=0:1 --method adaptive --device emulated
 expect 2 "there is no function 'sqt'" integrate 'sqt(x)' --over x=0:1 --method basic --device emulated
 expect 2 "a device compiles sources and does not call libraries" integrate --library f.so --over x=0:1 --method basic --device emulated
 expect 2 "the points of a device stay there" integrate x --over x=0:1 --method basic --device emulated --points p.csv
