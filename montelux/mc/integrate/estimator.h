@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -49,6 +50,8 @@ struct Tally {
     std::uint64_t singular = 0;
     double chi_squared = 0;
     int degrees_of_freedom = 0;
+    // Of chi-squared, where its law is not that of so many degrees of freedom; else not a number.
+    double p_value = std::numeric_limits<double>::quiet_NaN();
     // The target must not be believed before this is true (a pilot is running, too few replicates).
     bool ready = true;
     // The remaining error is rounding, or that of points that all agree: more evaluations do not help.

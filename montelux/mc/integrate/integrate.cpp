@@ -280,7 +280,9 @@ class Run {
         r.chi_squared = tally.chi_squared;
         r.degrees_of_freedom = tally.degrees_of_freedom;
         if (tally.degrees_of_freedom > 0)
-            r.p_value = chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom);
+            r.p_value = std::isnan(tally.p_value)
+                            ? chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom)
+                            : tally.p_value;
         r.method = tally.method.empty() ? method_ : tally.method;
         r.reason = std::move(tally.reason);
         r.stop = stop;

@@ -53,6 +53,7 @@ void IterationEstimate::add_mean(const SampleMoments& samples) {
 IterationAverage::IterationAverage(int components, bool full_covariance)
     : full_(full_covariance), value_(static_cast<std::size_t>(components)),
       covariance_(value_.size() * (full_covariance ? value_.size() : 1)), chi_squared_(value_),
+      terms_(value_), square_trace_(value_), cube_trace_(value_), pairs_(value_), triples_(value_),
       largest_(value_) {}
 
 double IterationAverage::variance(int component) const {
@@ -60,24 +61,17 @@ double IterationAverage::variance(int component) const {
     return covariance_[full_ ? c * value_.size() + c : c] / (weight_ * weight_);
 }
 
-void IterationAverage::compare(const IterationEstimate& iteration) {
-    if (iterations_ == 0) return;
-    for (std::size_t c = 0; c < value_.size(); ++c) {
-        const double own = iteration.covariance[full_ ? c * value_.size() + c : c];
-        const double rounding = rounding_error * value_[c];
-        const double sum = own + variance(static_cast<int>(c)) + rounding * rounding;
-        if (!(sum > 0)) continue;
-        double z = std::abs(iteration.value[c] - value_[c]) / std::sqrt(sum);
-        // Student's law where the variance comes from a few replicates, carried over to the normal one.
-        if (iteration.degrees_of_freedom > 0)
-            z = -normal_quantile(std::max(1e-300, student_t_cdf(-z, iteration.degrees_of_freedom)));
-        chi_squared_[c] += z * z;
-    }
-    ++degrees_of_freedom_;
+double IterationAverage::p_value(int component) const {
+    const auto c = static_cast<std::size_t>(component);
+    const double square = square_trace_[c], cube = cube_trace_[c];
+    if (!(square > 0)) return 1; // nothing differs
+    const double n = square * square / cube * (square / cube);
+    const double q = n + (chi_squared_[c] - terms_[c]) * std::sqrt(n / square);
+    return q > 0 ? chi_squared_p_value(q, n) : 1;
 }
 
 void IterationAverage::add(double weight, const IterationEstimate& iteration) {
-    compare(iteration);
+    compare(weight, iteration);
     ++iterations_;
     weight_ += weight;
     for (std::size_t c = 0; c < value_.size(); ++c)
@@ -87,6 +81,32 @@ void IterationAverage::add(double weight, const IterationEstimate& iteration) {
     for (std::size_t c = 0; c < iteration.largest_variance.size(); ++c)
         largest_[c] = std::max(largest_[c], weight * weight * iteration.largest_variance[c]);
     points_ += iteration.points;
+}
+
+void IterationAverage::compare(double weight, const IterationEstimate& iteration) {
+    if (iterations_ == 0) return;
+    for (std::size_t c = 0; c < value_.size(); ++c) {
+        const double own = iteration.covariance[full_ ? c * value_.size() + c : c];
+        const double of_mean = variance(static_cast<int>(c));
+        const double rounding = rounding_error * value_[c];
+        const double sum = own + of_mean + rounding * rounding;
+        if (!(sum > 0)) continue;
+        double z = std::abs(iteration.value[c] - value_[c]) / std::sqrt(sum);
+        // Student's law where the variance comes from a few replicates, carried over to the normal one.
+        if (iteration.degrees_of_freedom > 0)
+            z = -normal_quantile(std::max(1e-300, student_t_cdf(-z, iteration.degrees_of_freedom)));
+        chi_squared_[c] += z * z;
+        // By the differences before: squares of correlations, and products around triangles.
+        const double per_weight = 1 / (weight_ * weight_ * sum);
+        const double squares = pairs_[c] * per_weight, products = triples_[c] * per_weight;
+        terms_[c] += 1;
+        square_trace_[c] += 1 + 2 * squares;
+        cube_trace_[c] += 1 + 6 * squares + 6 * products;
+        const double a = of_mean * weight_ - weight * own;
+        triples_[c] += a / (sum * weight_) * pairs_[c];
+        pairs_[c] += a / sum * a;
+    }
+    ++degrees_of_freedom_;
 }
 
 void IterationAverage::tally(Tally& tally) const {
@@ -114,9 +134,14 @@ void IterationAverage::tally(Tally& tally) const {
     raise_standard_errors(least, tally);
     tally.degrees_of_freedom = degrees_of_freedom_;
     if (degrees_of_freedom_ == 0) return;
-    tally.chi_squared = *std::max_element(chi_squared_.begin(), chi_squared_.end());
-    const double p = chi_squared_p_value(tally.chi_squared, degrees_of_freedom_);
-    if (p * static_cast<double>(value_.size()) >= significance) return;
+    for (std::size_t c = 0; c < m; ++c) {
+        const double p = p_value(static_cast<int>(c));
+        if (c > 0 && p >= tally.p_value) continue;
+        tally.p_value = p;
+        tally.chi_squared = chi_squared_[c];
+    }
+    const double p = tally.p_value;
+    if (p * static_cast<double>(m) >= significance) return;
     char text[192];
     std::snprintf(text, sizeof text,
                   "the iterations disagree: chi-squared %.3g for %d degrees of freedom, p = %.2g",
@@ -130,6 +155,11 @@ void IterationAverage::save(StateWriter& state) const {
     state.put(value_);
     state.put(covariance_);
     state.put(chi_squared_);
+    state.put(terms_);
+    state.put(square_trace_);
+    state.put(cube_trace_);
+    state.put(pairs_);
+    state.put(triples_);
     state.put(largest_);
     state.put(points_);
     state.put(degrees_of_freedom_);
@@ -138,7 +168,8 @@ void IterationAverage::save(StateWriter& state) const {
 void IterationAverage::load(StateReader& state) {
     iterations_ = state.get<int>();
     weight_ = state.get_double();
-    for (std::vector<double>* part : {&value_, &covariance_, &chi_squared_, &largest_}) {
+    for (std::vector<double>* part : {&value_, &covariance_, &chi_squared_, &terms_, &square_trace_,
+                                      &cube_trace_, &pairs_, &triples_, &largest_}) {
         std::vector<double> numbers = state.get_doubles();
         if (numbers.size() != part->size()) throw Error("the saved state has another number of components");
         *part = std::move(numbers);

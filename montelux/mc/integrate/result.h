@@ -47,7 +47,8 @@ struct IntegrationResult {
     std::vector<double> first_non_finite_point;
     std::vector<IterationRecord> history;
     // Do independent parts of the run (iterations, replicates) agree? Zero degrees of freedom where there is
-    // nothing to compare; the p-value is then 1.
+    // nothing to compare; the p-value is then 1. It takes into account that comparisons of iterations with the
+    // mean before them are correlated, as the law of chi-squared does not.
     double chi_squared = 0;
     int degrees_of_freedom = 0;
     double p_value = 1;
