@@ -1,5 +1,6 @@
 #include "montelux/render/strategy_pictures.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <optional>
@@ -16,6 +17,18 @@
 namespace montelux {
 namespace {
 
+constexpr double most_gibibytes = 4;
+
+// Number of a strategy among all that find paths of at least two vertices, by length.
+std::size_t place_of(std::size_t s, std::size_t t) {
+    const std::size_t length = s + t;
+    return length * (length - 1) / 2 - 1 + s;
+}
+
+std::size_t longest_path(const IntegratorSettings& integrator) {
+    return static_cast<std::size_t>(std::max(integrator.max_depth, 0)) + 2;
+}
+
 void check_strategies(const Renderer& renderer) {
     const IntegratorSettings& integrator = renderer.description().integrator;
     const auto refuse = [](const std::string& what) { throw Error("strategy pictures", what); };
@@ -27,6 +40,12 @@ void check_strategies(const Renderer& renderer) {
     if (integrator.max_depth > most_strategy_depth)
         refuse("max_depth is " + std::to_string(integrator.max_depth) + "; expected at most " +
                std::to_string(most_strategy_depth));
+    const double bytes = static_cast<double>(place_of(0, longest_path(integrator) + 1)) *
+                         static_cast<double>(pixel_count(renderer.description().film.crop)) *
+                         double{2 * (sizeof(Vec3d) + sizeof(Vec3f))};
+    if (const double gibibytes = bytes / 0x1p30; gibibytes > most_gibibytes)
+        refuse("they would take " + std::to_string(std::lround(gibibytes)) +
+               " GiB; render fewer pixels, or lower max_depth");
 }
 
 // Sums over samples. Those of pixels are added by the thread that has the pixel's row, splats by any.
@@ -36,12 +55,6 @@ struct StrategySums {
     std::atomic<bool> found = false;
 };
 
-// Number of a strategy among all that find paths of at least two vertices, by length.
-std::size_t place_of(std::size_t s, std::size_t t) {
-    const std::size_t length = s + t;
-    return length * (length - 1) / 2 - 1 + s;
-}
-
 } // namespace
 
 std::vector<StrategyPicture> strategy_pictures(const Renderer& renderer, const std::function<bool()>& stop) {
@@ -49,7 +62,7 @@ std::vector<StrategyPicture> strategy_pictures(const Renderer& renderer, const s
     const SceneDescription& d = renderer.description();
     const PixelBounds& crop = d.film.crop;
     const auto width = static_cast<std::size_t>(crop.width());
-    const auto longest = static_cast<std::size_t>(std::max(d.integrator.max_depth, 0)) + 2;
+    const std::size_t longest = longest_path(d.integrator);
     const std::size_t pixels = pixel_count(crop);
     std::vector<StrategySums> sums(place_of(0, longest + 1));
     for (std::size_t length = 2; length <= longest; ++length)

@@ -24,8 +24,8 @@ struct StrategyPicture {
 //
 // Veach 1997, "Robust Monte Carlo Methods for Light Transport Simulation", figure 10.2.
 //
-// Throws Error unless the integrator traces light, without merging, the scene has no media, and max_depth is at most
-// most_strategy_depth.
+// Throws Error unless the integrator traces light, without merging, the scene has no media, max_depth is at most
+// most_strategy_depth, and the pictures take at most 4 GiB.
 std::vector<StrategyPicture> strategy_pictures(const Renderer& renderer,
                                                const std::function<bool()>& stop = {});
 inline constexpr int most_strategy_depth = 12;

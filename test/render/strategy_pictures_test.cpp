@@ -105,6 +105,10 @@ TEST(StrategyPictures, RefusesWhatHasNone) {
     d.integrator.max_depth = most_strategy_depth + 1;
     expect_refused(d, "max_depth is 13; expected at most 12");
     d.integrator.max_depth = 5;
+    SceneDescription large = d;
+    large.film.width = large.film.height = 8192;
+    large.film.crop = {0, 0, 8192, 8192};
+    expect_refused(large, "they would take 122 GiB");
     d.integrator.merging = MergingSettings{};
     expect_refused(d, "merging");
     d.integrator.merging.reset();
