@@ -81,7 +81,7 @@ class PathChains:
     def __repr__(self) -> str:
         chains, steps = self.accepted.shape
         mean = f", {100 * self.accepted.mean():.0f} % accepted" if self.accepted.size else ""
-        return f"<PathChains: {chains} chains of {steps} steps{mean}>"
+        return f"<PathChains: {chains} chain{'s' if chains != 1 else ''} of {steps} steps{mean}>"
 
     def __getattr__(self, name: str) -> Any:
         raise _unknown(self, name)
