@@ -21,7 +21,7 @@ text = re.sub(r"^(?=class Domain:)", error + "\n", text, count=1, flags=re.M)
 for found, meant in (
     (r"(-> |: )object\b", r"\1Any"),
     (r"\bdict(?=[:,)\s])", "dict[str, Any]"),
-    (r"\btuple(?=[:,)\s](?!\[))", "tuple[Any, ...]"),
+    (r"\btuple(?=[:,)\]\s](?!\[))", "tuple[Any, ...]"),
     (r"\bos\.PathLike\b(?!\[)", "os.PathLike[str]"),
     (r"\*\*(kwargs|attributes)\b", "**attributes: Any"),
     (r"typing\.Any", "Any"),

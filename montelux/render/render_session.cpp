@@ -110,6 +110,7 @@ RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise)
     if (settings_.target.quantile > 0)
         result.quantile = {settings_.target.quantile,
                            error_quantile(state_->film, settings_.target.quantile)};
+    guide_ = state_->guide;
     state_.reset();
     if (denoise && !report.cancelled()) {
         try {

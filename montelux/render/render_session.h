@@ -95,6 +95,8 @@ class RenderSession {
     // The finished picture, after render(). `denoise` adds layers to it, unless the render was cancelled; if
     // it throws, only these layers are lost. Frees the film's memory.
     RenderSnapshot finish(const std::function<void(Image&)>& denoise = {});
+    // After finish(): what paths of the render followed, or null.
+    const std::shared_ptr<const GuidingField>& guide() const { return guide_; }
 
     // The current picture, from any thread while render() runs in another. Pauses nothing, writes no
     // checkpoint, and changes no bit of the result. Waits at most `seconds`; empty if LiveFilm gives no copy.
@@ -117,6 +119,7 @@ class RenderSession {
     double samples_before_ = 0;
     std::string refused_checkpoint_;
     std::unique_ptr<Renderer> renderer_;
+    std::shared_ptr<const GuidingField> guide_;
     LiveFilm live_;
     mutable std::mutex mutex_; // of the next member
     std::string checkpoint_failure_;

@@ -255,6 +255,23 @@ void SampleContext::take(RayTracer& tracer, std::span<const Key> keys, Batch& ba
                           std::span(batch.layer_values).subspan(i * values, values));
 }
 
+void SampleContext::find_paths(RayTracer& tracer, const Key& key, BidirectionalMemory& memory,
+                               const std::function<void(const FilmPath&)>& visit) const {
+    FilmPoint point;
+    PathStart<SampleStream> start = begin(key, point);
+    auto found = [&](const FoundPath& path) {
+        // Where secondary wavelengths have ended, the value is zero at these.
+        Vec3f rgb = exposure_.sensor().to_rgb(path.value, start.camera.lambda);
+        if (path.film == nullptr) rgb = rgb * (point.weight * point.filter.weight);
+        visit({path.s, path.t, path.film, rgb, path.weight});
+    };
+    const PathObserver observer{
+        [](void* self, const FoundPath& path) { (*static_cast<decltype(found)*>(self))(path); }, &found};
+    memory.ignored.clear();
+    std::get<BidirectionalIntegrator>(integrator_)
+        .estimate(scene_, tracer, start.camera, start.stream, memory, &observer);
+}
+
 SampleRecord SampleContext::record(RayTracer& tracer, const Key& key) const {
     SampleRecord record;
     FilmPoint point;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -88,6 +89,17 @@ class SampleContext {
     template <typename Keep>
     void teach(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<float> radiance,
                const Keep& keep, std::vector<GuidingRecord>& records) const;
+    // A path that a sample of an integrator that makes splats finds, and what it brings to the film.
+    struct FilmPath {
+        std::size_t s = 0, t = 0;      // vertices on the light's and on the camera's side
+        const Point2f* film = nullptr; // of a splat; others count for the pixel of the sample
+        Vec3f rgb;         // linear sRGB as of the strategy alone, without the film's limit; filter
+                           // weight applied, but to splats
+        double weight = 0; // among the strategies that find the path
+    };
+    // Without merging.
+    void find_paths(RayTracer& tracer, const Key& key, BidirectionalMemory& memory,
+                    const std::function<void(const FilmPath&)>& visit) const;
     // One sample by itself, with every step of its path; the contribution is the same to the last bit.
     SampleRecord record(RayTracer& tracer, const Key& key) const;
 

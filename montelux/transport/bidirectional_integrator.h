@@ -17,7 +17,7 @@
 
 namespace montelux {
 
-// A path that a strategy found, for tests: its first s vertices are of the light's side, the other t of the camera's.
+// A path that a strategy found, for tests and pictures of strategies: its first s vertices are of the light's side, the other t of the camera's.
 // Of a merged path (s + t vertices, merged at v_s) the light's vertices are those of a LightMap.
 struct FoundPath {
     std::size_t s = 0, t = 0;
@@ -29,6 +29,7 @@ struct FoundPath {
     double weight = 0;
     SampledSpectrum value;                  // unweighted
     const LightMapVertex* merged = nullptr; // at v_s, if that is merged
+    const Point2f* film = nullptr;          // of a splat: where it lies, in pixels
 };
 struct PathObserver {
     void (*found)(void* self, const FoundPath& path);

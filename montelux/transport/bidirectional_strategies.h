@@ -249,9 +249,10 @@ class BidirectionalStrategies {
         if (lambda.secondary_terminated()) value = SampledSpectrum(4 * value[0], 0, 0, 0);
         if (observer_ != nullptr) [[unlikely]] {
             const std::size_t light = s > 0 ? s - 1 : 0, camera = s > 0 ? t - 1 : t - 2;
-            observer_->found(observer_->self, {s, t, end, std::span(memory_.light).first(light),
-                                               std::span(memory_.camera).first(camera),
-                                               film != nullptr ? lens_ : camera_.ray.o, d, weight, value});
+            observer_->found(observer_->self,
+                             {s, t, end, std::span(memory_.light).first(light),
+                              std::span(memory_.camera).first(camera),
+                              film != nullptr ? lens_ : camera_.ray.o, d, weight, value, nullptr, film});
         }
         const SampledSpectrum weighted = value * static_cast<float>(weight);
         if (film != nullptr)

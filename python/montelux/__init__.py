@@ -43,6 +43,7 @@ from ._core import (
     Film,
     GaussianFilter,
     GoniometricLight,
+    Guide,
     Hair,
     Importance,
     Integrator,
@@ -100,6 +101,7 @@ from ._compare import ChannelComparison, Comparison, ZScores, compare
 from ._filters import pixel_filter
 from ._integrate import METHODS, integrate, integrate_log, train_map
 from ._names import UnknownAttribute, strict
+from ._paths import PathChains, StrategyPicture
 from ._picture import Picture
 from ._propagation import PropagationWarning
 from ._render import Progress, Render, View
@@ -147,6 +149,7 @@ __all__ = [
     "Film",
     "GaussianFilter",
     "GoniometricLight",
+    "Guide",
     "Hair",
     "History",
     "Importance",
@@ -171,6 +174,7 @@ __all__ = [
     "Occlusion",
     "OrthographicCamera",
     "parse",
+    "PathChains",
     "PerspectiveCamera",
     "Picture",
     "pixel_filter",
@@ -201,6 +205,7 @@ __all__ = [
     "SphericalCamera",
     "SpotLight",
     "star_discrepancy",
+    "StrategyPicture",
     "Stratified",
     "Subsurface",
     "SunLight",
@@ -222,4 +227,4 @@ __all__ = [
     "ZScores",
 ]
 
-strict(*METHODS.values(), Distribution, Domain, Technique, AdaptiveMap, Spectrum, EnvironmentSampler, warp.Warp)
+strict(*METHODS.values(), Distribution, Domain, Technique, AdaptiveMap, Spectrum, EnvironmentSampler, Guide, warp.Warp)

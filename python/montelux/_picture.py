@@ -89,6 +89,11 @@ class Picture:
         return self._snapshot().seconds
 
     @property
+    def cpu_seconds(self) -> float:
+        """CPU time of the rendering, of all threads together."""
+        return self._snapshot().cpu_seconds
+
+    @property
     def bad_samples(self) -> int:
         """Samples that were NaN, infinite or negative: left out as zeros."""
         return self._snapshot().bad_samples

@@ -102,6 +102,13 @@ class Render(Picture):
         """'samples' (all were taken), 'error' (the target was reached), 'time' or 'cancelled'."""
         return self._snapshot().stop
 
+    @property
+    def guide(self) -> _core.Guide | None:
+        """What paths of a guided render have followed (`scene.integrator.guiding`), after its end; None where they
+        followed no guide."""
+        self._snapshot()
+        return self._job.guide
+
     def stop(self) -> Render:
         """Ends it now, with the result so far."""
         self._job.cancel()

@@ -11,6 +11,7 @@ from . import _core
 from ._core import Error
 from ._denoiser import offer_denoiser
 from ._names import MOST_THREADS, is_number, is_whole, settings_of, strict, strict_arguments, unknown
+from ._paths import PathChains, StrategyPicture
 from ._render import Progress, Render
 
 _MOST_SAMPLES = 1 << 24  # per pixel, with a target error or a time
@@ -71,9 +72,9 @@ class Scene(_core.SceneBase):
         parts. denoise: the finished picture is denoised too, by Open Image Denoise (layer 'denoised'), unless it
         is stopped before. view: a page shows the render while it runs: `Render.view`.
         """
-        for name, value in (("spp", spp), ("max_spp", max_spp)):
-            if value is not None and not (is_whole(value) and 1 <= value <= 1 << 30):
-                raise Error(f"render: {name}={value!r} was given; expected a whole number from 1 to {1 << 30}")
+        _check_sampling("render", spp, seed, threads)
+        if max_spp is not None:
+            _check_spp("render", "max_spp", max_spp)
         for name, number in (
             ("target_error", target_error),
             ("time", time),
@@ -89,10 +90,6 @@ class Scene(_core.SceneBase):
                 )
             if not (is_number(target_quantile) and 0 < target_quantile < 1):
                 raise Error(f"render: target_quantile={target_quantile!r} was given; expected a number between 0 and 1")
-        if seed is not None and not (is_whole(seed) and 0 <= seed < 2**64):
-            raise Error(f"render: seed={seed!r} was given; expected a whole number in [0, 2**64)")
-        if not (is_whole(threads) and 0 <= threads <= MOST_THREADS):
-            raise Error(f"render: threads={threads!r} was given; expected a whole number from 0 to {MOST_THREADS}")
         if not (isinstance(progress, bool) or callable(progress)):
             raise Error(f"render: progress={progress!r} was given; expected True, False or a function")
         part = (1, 1) if slice is None else tuple(slice)
@@ -134,12 +131,50 @@ class Scene(_core.SceneBase):
             )
         return Render(job, progress, every)
 
+    @strict_arguments
+    def strategy_pictures(
+        self, *, spp: int | None = None, seed: int | None = None, threads: int = 0
+    ) -> list[StrategyPicture]:
+        """What each strategy of the integrator 'bidirectional' or 'light-tracing' brings to the picture, by the length
+        of the paths and then by `s` (Veach 1997, figure 10.2). The weighted pictures add up to the picture that
+        `render` makes of the same samples. Without media and merging, for a `max_depth` of at most 12."""
+        _check_sampling("strategy_pictures", spp, seed, threads)
+        found = _core.strategy_pictures(self, spp=spp, seed=seed, threads=int(threads))
+        return [StrategyPicture(*values) for values in found]
+
+    @strict_arguments
+    def path_chains(
+        self, *, chains: int = 4, group: int = 0, spp: int | None = None, seed: int | None = None, threads: int = 0
+    ) -> PathChains:
+        """The walks of the first chains of a group of the integrator 'metropolis', as `render` with these samples and
+        this seed takes them; fewer chains if the group has fewer, none if it found no light."""
+        _check_sampling("path_chains", spp, seed, threads)
+        for name, value, least in (("chains", chains, 1), ("group", group, 0)):
+            if not (is_whole(value) and least <= value < 1 << 30):
+                raise Error(f"path_chains: {name}={value!r} was given; expected a whole number from {least} on")
+        trace = _core.path_chains(self, chains=int(chains), group=int(group), spp=spp, seed=seed, threads=int(threads))
+        return PathChains.of(trace)
+
     def __repr__(self) -> str:
         width, height = self.film.resolution
         return (
             f"<Scene {self.name}: {len(self.shapes)} shapes, {len(self.materials)} materials, {len(self.lights)} "
             f"lights, {'no camera' if self.camera is None else type(self.camera).__name__}, {width} x {height} pixels>"
         )
+
+
+def _check_spp(function: str, name: str, value: Any) -> None:
+    if not (is_whole(value) and 1 <= value <= 1 << 30):
+        raise Error(f"{function}: {name}={value!r} was given; expected a whole number from 1 to {1 << 30}")
+
+
+def _check_sampling(function: str, spp: Any, seed: Any, threads: Any) -> None:
+    if spp is not None:
+        _check_spp(function, "spp", spp)
+    if seed is not None and not (is_whole(seed) and 0 <= seed < 2**64):
+        raise Error(f"{function}: seed={seed!r} was given; expected a whole number in [0, 2**64)")
+    if not (is_whole(threads) and 0 <= threads <= MOST_THREADS):
+        raise Error(f"{function}: threads={threads!r} was given; expected a whole number from 0 to {MOST_THREADS}")
 
 
 def load(

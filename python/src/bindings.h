@@ -48,7 +48,9 @@ void bind_views(nb::module_& m); // camera, sampler, integrator
 void bind_textures(nb::module_& m);
 void bind_scene_lists(nb::module_& m);
 void bind_scene(nb::module_& m);
+void bind_guide(nb::module_& m);
 void bind_render(nb::module_& m);
+void bind_paths(nb::module_& m); // strategies of a bidirectional picture, chains of a Metropolis picture
 void bind_compare(nb::module_& m);
 void bind_testing(nb::module_& m);
 

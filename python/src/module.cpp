@@ -60,7 +60,9 @@ NB_MODULE(_core, m) {
     bind_textures(m);
     bind_scene_lists(m);
     bind_scene(m);
+    bind_guide(m);
     bind_render(m);
+    bind_paths(m);
     bind_compare(m);
     bind_testing(m);
 }

@@ -1,10 +1,10 @@
 #include "python/src/bindings.h"
+#include "python/src/guide.h"
 #include "python/src/images.h"
+#include "python/src/interruptible.h"
 #include "python/src/render_job.h"
 #include "python/src/scene_object.h"
 #include <algorithm>
-#include <chrono>
-#include <future>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,40 +19,14 @@
 #include "montelux/scene/build/check_references.h"
 
 namespace montelux::python {
-namespace {
-
-// Films beyond all memory are refused before their pixels are allocated.
-void check_scene(const SceneHolder& scene) {
-    if (!scene.has_camera)
+std::shared_ptr<const SceneDescription> description_of(const SceneObject& scene,
+                                                       std::optional<std::uint32_t> spp,
+                                                       std::optional<std::uint64_t> seed) {
+    if (!scene.holder->has_camera)
         throw Error("render",
                     "the scene has no camera; set scene.camera, for example to PerspectiveCamera(fov=40)");
-    check_materials(scene.description->scene);
-}
-
-// Without Python's lock, on another thread, so that Ctrl-C is seen and cancels it.
-template <typename Work>
-void run_interruptibly(const Work& work) {
-    CancelFlag cancel;
-    std::future<void> done = std::async(std::launch::async, [&] { work(cancel); });
-    while (done.wait_for(std::chrono::milliseconds(50)) != std::future_status::ready) {
-        nb::gil_scoped_acquire lock;
-        if (!cancel.requested() && PyErr_CheckSignals() != 0) cancel.request();
-    }
-    if (cancel.requested()) {
-        nb::gil_scoped_acquire lock;
-        throw nb::python_error();
-    }
-    done.get();
-}
-
-std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::uint32_t> spp,
-                                 std::optional<std::uint64_t> seed, double target_error, double quantile,
-                                 double time, std::optional<bool> adaptive, int threads,
-                                 const std::filesystem::path& checkpoint, double checkpoint_every,
-                                 bool resume, std::pair<std::uint32_t, std::uint32_t> slice, bool denoise,
-                                 bool view) {
-    check_scene(*scene.holder);
     std::shared_ptr<const SceneDescription> description = scene.holder->description;
+    check_materials(description->scene);
     const SamplerSettings& sampler = description->sampler;
     if ((spp && *spp != sampler.spp) || (seed && *seed != sampler.seed)) {
         auto own = std::make_shared<SceneDescription>(*description);
@@ -60,6 +34,18 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
         if (seed) own->sampler.seed = *seed;
         description = std::move(own);
     }
+    return description;
+}
+
+namespace {
+
+std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::uint32_t> spp,
+                                 std::optional<std::uint64_t> seed, double target_error, double quantile,
+                                 double time, std::optional<bool> adaptive, int threads,
+                                 const std::filesystem::path& checkpoint, double checkpoint_every,
+                                 bool resume, std::pair<std::uint32_t, std::uint32_t> slice, bool denoise,
+                                 bool view) {
+    std::shared_ptr<const SceneDescription> description = description_of(scene, spp, seed);
     if (!checkpoint.empty() && !resume && generation_exists(checkpoint))
         throw Error(checkpoint.string(), "the file exists; pass resume=True to resume from it, or remove it");
     RenderSessionSettings settings;
@@ -244,6 +230,11 @@ void bind_render(nb::module_& m) {
              })
         .def("warnings", &warnings_of)
         .def_prop_ro("view_url", &RenderJob::view_url)
+        .def_prop_ro("guide",
+                     [](const RenderJob& j) -> std::optional<Guide> {
+                         if (!j.session().guide()) return std::nullopt;
+                         return Guide{j.session().guide()};
+                     })
         .def_prop_ro("refused_checkpoint",
                      [](const RenderJob& j) { return j.session().refused_checkpoint(); });
     m.def("start_render", &start, "scene"_a, "spp"_a.none(), "seed"_a.none(), "target_error"_a,

@@ -189,6 +189,14 @@ def scenes(text: str) -> montelux.Comparison:
     picture: montelux.Picture = list(render)[-1]
     mean: npt.NDArray[np.float32] = picture.mean
     assert mean.shape[2] == 3
+    guide: montelux.Guide | None = render.guide
+    assert guide is None and render.cpu_seconds > 0
+    scene.integrator.method = "metropolis"
+    chains: montelux.PathChains = scene.path_chains(chains=1, spp=64)
+    assert chains.large.dtype == np.bool_ and chains.film.shape[2] == 2
+    scene.integrator.method = "bidirectional"
+    strategies: list[montelux.StrategyPicture] = scene.strategy_pictures(spp=1)
+    assert strategies[0].weighted.shape == mean.shape
     comparison = montelux.compare(render, render)
     channels: tuple[montelux.ChannelComparison, ...] = comparison.channels
     scores: montelux.ZScores | None = comparison.z

@@ -100,7 +100,8 @@ std::array<double, 3> ChainGroup::observables(const PrimarySample& sample) const
             std::log(sample.size)};
 }
 
-void ChainGroup::walk(std::size_t task, RayTracer& tracer, const std::function<bool()>& stop) {
+void ChainGroup::walk(std::size_t task, RayTracer& tracer, const std::function<bool()>& stop,
+                      const StepObserver& observer) {
     Part& part = parts_[starting_sums_.size() + task];
     const std::size_t chains = plan_->size.chains;
     std::vector<PhiloxStream> starts, walks;
@@ -123,6 +124,8 @@ void ChainGroup::walk(std::size_t task, RayTracer& tracer, const std::function<b
         bundle.step(tracer, plan_->large_step_probability, plan_->small_step,
                     [&](std::size_t c, const Mutation& m) {
                         const PrimarySample& y = *m.proposed;
+                        if (observer) [[unlikely]]
+                            observer(c, m);
                         count(y, path++, part);
                         (m.large ? part.large_steps : part.small_steps) += 1;
                         (m.large ? part.large_accepted : part.small_accepted) += m.acceptance;

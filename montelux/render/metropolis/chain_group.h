@@ -14,6 +14,10 @@
 namespace montelux {
 
 class ChainBundle;
+struct Mutation;
+
+// Sees a step of a chain before the chain moves: the number of the chain in its task, and the mutation.
+using StepObserver = std::function<void(std::size_t chain, const Mutation& mutation)>;
 
 // Its picture is an unbiased estimate of the image, a pure function of (scene, plan, seed, group). Tasks of one kind run
 // in any order and on any threads; first all of take_starting_points, then choose_starts, then all of walk.
@@ -30,7 +34,9 @@ class ChainGroup {
     void choose_starts();
     std::size_t walking_tasks() const { return static_cast<std::size_t>(plan_->size.bundles); }
     // Returns early, and leaves the group useless, when stop(), called now and then, returns true.
-    void walk(std::size_t task, RayTracer& tracer, const std::function<bool()>& stop);
+    // `observer`, unless empty, sees each step.
+    void walk(std::size_t task, RayTracer& tracer, const std::function<bool()>& stop,
+              const StepObserver& observer = {});
 
     // After all tasks.
     Vec3d mean(int x, int y) const { return splats_.sum(x, y) * picture_scale_; }

@@ -7,6 +7,7 @@
 
 #include "montelux/mc/parallel/cpu_time.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/metropolis/chain_bundle.h"
 #include "montelux/render/tile_renderer.h"
 
 namespace montelux {
@@ -108,24 +109,24 @@ std::size_t ChainRenderer::groups_at_once(int threads) {
     return static_cast<std::size_t>(1 + (threads - 1) / threads_per_group);
 }
 
+bool ChainRenderer::make_plan(const GroupWatch& watch) {
+    if (plan_) return true;
+    const double begin = thread_cpu_seconds();
+    plan_ = make_chain_plan(sampler_, accelerator_, description_, order_.replicate_size(), watch.abandon);
+    costs_.cpu_seconds += thread_cpu_seconds() - begin;
+    return plan_.has_value();
+}
+
 std::vector<ChainReplicate> ChainRenderer::take(std::uint64_t first, std::size_t count,
                                                 const GroupWatch& watch) {
     paths_ = 0;
-    if (!plan_) {
-        const double begin = thread_cpu_seconds();
-        plan_ = make_chain_plan(sampler_, accelerator_, description_, order_.replicate_size(), watch.abandon);
-        costs_.cpu_seconds += thread_cpu_seconds() - begin;
-        if (!plan_) return {};
-    }
+    if (!make_plan(watch)) return {};
     const PixelBounds& crop = description_.film.crop;
     while (groups_.size() < count)
         groups_.push_back(std::make_unique<ChainGroup>(sampler_, *plan_, keys_, crop));
-    const std::uint32_t m = order_.replicate_size();
-    // Groups are counted over all slices of a render.
-    const auto group_of = [&](std::size_t g) { return order_.index((first + g) * m) / m; };
     std::vector<ChainReplicate> replicates(count);
     for (std::size_t g = 0; g < count; ++g) {
-        groups_[g]->begin(group_of(g));
+        groups_[g]->begin(group_of(first + g));
         replicates[g].number = first + g;
         replicates[g].pixels.resize(pixel_count(crop));
     }
@@ -156,7 +157,7 @@ std::vector<ChainReplicate> ChainRenderer::take(std::uint64_t first, std::size_t
             const std::size_t g = i / rows, row = i % rows;
             const std::span pixels = std::span(replicates[g].pixels).subspan(row * width, width);
             BadSampleReport bad;
-            take_direct_light(group_of(g), static_cast<int>(row), pixels, tracer, bad);
+            take_direct_light(group_of(first + g), static_cast<int>(row), pixels, tracer, bad);
             const int y = crop.y0 + static_cast<int>(row);
             for (int x = crop.x0; x < crop.x1; ++x) {
                 Vec3d& mean = pixels[static_cast<std::size_t>(x - crop.x0)].mean;
@@ -168,6 +169,37 @@ std::vector<ChainReplicate> ChainRenderer::take(std::uint64_t first, std::size_t
         }))
         return {};
     return replicates;
+}
+
+std::vector<ChainWalk> ChainRenderer::trace(std::uint64_t replicate, std::size_t chains,
+                                            const GroupWatch& watch) {
+    paths_ = 0;
+    if (!make_plan(watch)) return {};
+    ChainGroup group(sampler_, *plan_, keys_, description_.film.crop);
+    group.begin(group_of(replicate));
+    const GroupSize& size = plan_->size;
+    if (!run_tasks(group.starting_tasks(), watch, size.starting_points / group.starting_tasks(),
+                   [&](std::size_t i, RayTracer& tracer) { group.take_starting_points(i, tracer); }))
+        return {};
+    group.choose_starts();
+    std::vector<ChainWalk> traces(std::min<std::uint64_t>(chains, size.all_chains()));
+    const std::size_t bundles = std::min<std::uint64_t>(size.bundles, traces.size());
+    const auto walk = [&](std::size_t task, RayTracer& tracer) {
+        group.walk(task, tracer, watch.abandon, [&](std::size_t c, const Mutation& m) {
+            const std::size_t chain = c * size.bundles + task; // ChainGroup::walk
+            if (m.current == nullptr || chain >= traces.size()) return;
+            ChainWalk& trace = traces[chain];
+            if (trace.steps.empty()) {
+                trace.start = m.current->film;
+                trace.start_size = m.current->size;
+                trace.steps.reserve(size.states);
+            }
+            trace.steps.push_back({m.proposed->film, m.proposed->size, m.acceptance, m.large, m.accepted});
+        });
+    };
+    if (!run_tasks(bundles, watch, size.chains * size.states, walk)) return {};
+    std::erase_if(traces, [](const ChainWalk& trace) { return trace.steps.empty(); });
+    return traces;
 }
 
 ChainCosts ChainRenderer::take_costs() { return std::exchange(costs_, {}); }

@@ -57,6 +57,19 @@ struct ChainReplicate {
     ChainGroup::Tally tally;        // with the statistics of the plan
 };
 
+// What a chain of a group did.
+struct ChainWalk {
+    struct Step {
+        Point2f proposed; // the point of the film, in pixels
+        double size = 0;  // of the proposed state
+        double acceptance = 0;
+        bool large = false, accepted = false;
+    };
+    Point2f start;
+    double start_size = 0;
+    std::vector<Step> steps;
+};
+
 // Groups are replicates: that of the film's n-th replicate has the number that `order` gives its samples. They are
 // taken a few at a time, so that all threads have work, and added in order. Memory: a SplatFilm for every eight threads.
 //
@@ -79,6 +92,9 @@ class ChainRenderer {
     static std::size_t groups_at_once(int threads);
     // The film's replicates from `first` on, each a pure function of its number; none if they were abandoned.
     std::vector<ChainReplicate> take(std::uint64_t first, std::size_t count, const GroupWatch& watch);
+    // The first chains of the film's replicate of this number, as take() walks them; fewer if the group has fewer or
+    // found no light to start from, none if they were abandoned.
+    std::vector<ChainWalk> trace(std::uint64_t replicate, std::size_t chains, const GroupWatch& watch);
     // Of everything since the last call.
     ChainCosts take_costs();
     // Call in the order of their numbers. May run at the same time as take().
@@ -88,6 +104,13 @@ class ChainRenderer {
     // Light and features of a row of a group's pixels: means over their camera rays.
     void take_direct_light(std::uint64_t group, int row, std::span<ChainReplicate::PixelValue> into,
                            RayTracer& tracer, BadSampleReport& bad) const;
+    // False if that was abandoned.
+    bool make_plan(const GroupWatch& watch);
+    std::uint64_t group_of(std::uint64_t replicate) const {
+        // Groups are counted over all slices of a render.
+        const std::uint32_t m = order_.replicate_size();
+        return order_.index(replicate * m) / m;
+    }
     template <typename Task>
     bool run_tasks(std::size_t count, const GroupWatch& watch, std::uint64_t paths, const Task& task);
 

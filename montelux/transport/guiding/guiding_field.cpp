@@ -1,5 +1,6 @@
 #include "montelux/transport/guiding/guiding_field.h"
 
+#include <limits>
 #include <span>
 
 #include "montelux/mc/math/error.h"
@@ -11,6 +12,29 @@ std::size_t GuidingField::bytes() const {
     for (const std::vector<Node>& nodes : trees_) bytes += nodes.size() * sizeof(Node);
     for (const GuidingRegion& region : regions_) bytes += region.directions.bytes();
     return bytes;
+}
+
+std::vector<GuidingField::Cell> GuidingField::cells() const {
+    constexpr float all = std::numeric_limits<float>::infinity();
+    std::vector<Cell> cells;
+    for (std::size_t facing = 0; facing < facings; ++facing) {
+        const std::vector<Node>& nodes = trees_[facing];
+        if (nodes.empty()) continue;
+        // Children follow their parents.
+        std::vector<Cell> of_node(nodes.size());
+        of_node[0] = {static_cast<Facing>(facing), {-all, -all, -all}, {all, all, all}};
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            const Node& node = nodes[n];
+            if (node.axis == 3) {
+                cells.push_back(of_node[n]);
+                continue;
+            }
+            of_node[node.low] = of_node[node.high] = of_node[n];
+            of_node[node.low].high[static_cast<int>(node.axis)] = node.split;
+            of_node[node.high].low[static_cast<int>(node.axis)] = node.split;
+        }
+    }
+    return cells;
 }
 
 void GuidingField::save(ByteWriter& out) const {

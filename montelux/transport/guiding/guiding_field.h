@@ -67,6 +67,12 @@ class GuidingField {
     }
 
     std::size_t regions() const { return regions_.size(); }
+    // The part of space of a region, for points of one facing; infinite where only the scene bounds it.
+    struct Cell {
+        Facing facing{};
+        Point3f low, high;
+    };
+    std::vector<Cell> cells() const;
     std::size_t bytes() const;
 
     void save(ByteWriter& out) const;

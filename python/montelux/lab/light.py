@@ -35,12 +35,14 @@ def displayed(linear: Any, exposure: float = 1.0) -> Any:
     return np.where(v <= 0.0031308, 12.92 * v, 1.055 * np.maximum(v, 1e-9) ** (1 / 2.4) - 0.055)
 
 
+def luminance(linear: Any) -> Any:
+    """Of linear sRGB; of standard errors too, for the channels of a pixel share their samples: their errors add up."""
+    return np.asarray(linear, dtype=float) @ np.array([0.2126, 0.7152, 0.0722])
+
+
 def mean_luminance(render: Any) -> tuple[float, float]:
     """Of a picture whose pixels are independent, with its standard error."""
-    weights = np.array([0.2126, 0.7152, 0.0722])
-    mean = np.asarray(render.mean, dtype=float) @ weights
-    # Channels of a pixel share their samples: their errors add up.
-    error = np.asarray(render.standard_error, dtype=float) @ weights
+    mean, error = luminance(render.mean), luminance(render.standard_error)
     return float(mean.mean()), float(np.sqrt((error**2).sum())) / mean.size
 
 

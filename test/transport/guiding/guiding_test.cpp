@@ -1,7 +1,10 @@
 // What a guide learns, and directions that are drawn from it and a BSDF together.
 #include "test/significance.h"
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <map>
+#include <set>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
@@ -106,6 +109,32 @@ TEST(GuidingField, DamagedBytesAreRefusedOrHarmless) {
         }
     }
     EXPECT_GT(refused, 60);
+}
+
+TEST(GuidingField, CellsAreWhereItsRegionsAre) {
+    const GuidingField field = floor_field(500);
+    const Facing up = facing_of({0, 0, 1});
+    const std::vector<GuidingField::Cell> cells = field.cells();
+    EXPECT_EQ(cells.size(), field.regions());
+    std::map<std::size_t, const GuidingRegion*> region_of_cell;
+    TestUniforms u(23);
+    for (int i = 0; i < 5000; ++i) {
+        const Point3f p{3 * u.next_float() - 1.5f, 3 * u.next_float() - 1.5f, u.next_float() - 0.5f};
+        const auto within = [&](const GuidingField::Cell& cell) {
+            bool is = cell.facing == up;
+            for (int axis = 0; axis < 3; ++axis)
+                is = is && p[axis] >= cell.low[axis] && p[axis] < cell.high[axis];
+            return is;
+        };
+        ASSERT_EQ(std::ranges::count_if(cells, within), 1);
+        const auto cell = static_cast<std::size_t>(std::ranges::find_if(cells, within) - cells.begin());
+        const auto known = region_of_cell.try_emplace(cell, field.find(p, up)).first;
+        EXPECT_EQ(known->second, field.find(p, up));
+    }
+    std::set<const GuidingRegion*> regions;
+    for (const auto& [cell, region] : region_of_cell) regions.insert(region);
+    EXPECT_EQ(regions.size(), region_of_cell.size());
+    EXPECT_GT(regions.size(), 50u);
 }
 
 // Many records: regions stay within their memory.

@@ -36,6 +36,10 @@ from . import (
     c8_filters,
     c8_lens,
     c9_visible,
+    c10_pyramid,
+    c10_guides,
+    c10_chains,
+    c10_methods,
 )
 
 _MODULES = (
@@ -66,6 +70,10 @@ _MODULES = (
     c8_filters,
     c8_lens,
     c9_visible,
+    c10_pyramid,
+    c10_guides,
+    c10_chains,
+    c10_methods,
 )
 
 
