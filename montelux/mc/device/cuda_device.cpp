@@ -43,9 +43,25 @@ class CudaContextOwner {
     CudaContextOwner(const CudaContextOwner&) = delete;
     CudaContextOwner& operator=(const CudaContextOwner&) = delete;
 
-    // Calls of the driver concern the context of the calling thread.
-    bool enter_quietly() const noexcept { return driver.set_context(context_) == 0; }
-    void enter() const { driver.check(driver.set_context(context_), "the GPU's context cannot be entered"); }
+    // Calls of the driver concern the current context of the calling thread. This one is current while a Visit lives;
+    // then the caller's is again, which may be another library's.
+    class Visit {
+      public:
+        explicit Visit(const CudaContextOwner& cuda)
+            : driver_(cuda.driver), result_(driver_.push_context(cuda.context_)) {}
+        ~Visit() {
+            CudaDriver::Context left = nullptr;
+            if (entered()) driver_.pop_context(&left);
+        }
+        Visit(const Visit&) = delete;
+        Visit& operator=(const Visit&) = delete;
+        bool entered() const { return result_ == 0; }
+        void check() const { driver_.check(result_, "the GPU's context cannot be entered"); }
+
+      private:
+        const CudaDriver& driver_;
+        CudaDriver::Result result_;
+    };
 
     CudaDriver driver;
     CudaDriver::DeviceNumber number = 0;
@@ -60,7 +76,8 @@ class CudaProgram final : public DeviceProgram {
   public:
     CudaProgram(std::shared_ptr<const CudaContextOwner> cuda, const std::string& image)
         : cuda_(std::move(cuda)) {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         const CudaDriver::Result loaded = cuda_->driver.load_module(&module_, image.data());
         if (loaded == CudaDriver::unsupported_ptx || loaded == CudaDriver::no_binary ||
             loaded == CudaDriver::invalid_ptx)
@@ -74,14 +91,16 @@ class CudaProgram final : public DeviceProgram {
         cuda_->driver.check(found, "the kernels cannot be found");
     }
     ~CudaProgram() override {
-        if (cuda_->enter_quietly()) cuda_->driver.unload_module(module_);
+        if (const CudaContextOwner::Visit visit(*cuda_); visit.entered())
+            cuda_->driver.unload_module(module_);
     }
     CudaProgram(const CudaProgram&) = delete;
     CudaProgram& operator=(const CudaProgram&) = delete;
 
     void run(const DeviceJob& job) override {
         if (job.count == 0) return;
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         const auto blocks =
             static_cast<unsigned int>((job.count + device_block_threads - 1) / device_block_threads);
         DeviceJob argument = job;
@@ -113,30 +132,35 @@ class CudaDevice final : public Device {
     }
 
     void* allocate(std::size_t bytes) override {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         CudaDriver::Pointer memory = 0;
         check_memory(cuda_->driver.allocate(&memory, bytes), bytes, "the GPU");
         return reinterpret_cast<void*>(static_cast<std::uintptr_t>(memory));
     }
     void release(void* memory) noexcept override {
-        if (cuda_->enter_quietly()) cuda_->driver.release(address(memory));
+        if (const CudaContextOwner::Visit visit(*cuda_); visit.entered())
+            cuda_->driver.release(address(memory));
     }
     void* allocate_host(std::size_t bytes) override {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         void* memory = nullptr;
         check_memory(cuda_->driver.allocate_host(&memory, bytes), bytes, "the processor, for copies");
         return memory;
     }
     void release_host(void* memory) noexcept override {
-        if (cuda_->enter_quietly()) cuda_->driver.release_host(memory);
+        if (const CudaContextOwner::Visit visit(*cuda_); visit.entered()) cuda_->driver.release_host(memory);
     }
     void copy_in(void* to, const void* from, std::size_t bytes) override {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         cuda_->driver.check(cuda_->driver.copy_in(address(to), from, bytes),
                             "numbers cannot be copied to the GPU");
     }
     void copy_out(void* to, const void* from, std::size_t bytes) override {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         cuda_->driver.check(cuda_->driver.copy_out(to, address(from), bytes),
                             "numbers cannot be copied from the GPU");
     }
