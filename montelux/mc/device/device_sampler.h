@@ -4,10 +4,19 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "montelux/mc/device/device_function.h"
 
 namespace montelux {
+
+// A mixture density and the points of its channels, as DeviceMixture has them; without the keys of its sequences.
+struct DeviceMixtureTables {
+    std::vector<double> shares, bins = {}, powers = {}, gaussians = {};
+    std::vector<int> bin_begin = {};
+    std::vector<unsigned long long> channel_begin = {}, channel_first = {};
+    int map_channel = 0, first_gaussian = 0;
+};
 
 // Used by one thread at a time. Tables stay on the device until others are given.
 class DeviceSampler {
@@ -25,10 +34,16 @@ class DeviceSampler {
     // An adaptive map, increments + 1 edges for each dimension.
     void set_map(std::span<const double> edges, int increments);
 
+    // Compiles what mixtures need, unless that was done; set_mixture does it otherwise.
+    void prepare_mixtures() { function_->prepare_mixtures(); }
+    // A mixture density, whose points are Sobol' points: set_sobol then gives the keys of each replicate's channels.
+    void set_mixture(const DeviceMixtureTables& tables);
+
     // Component c of point i is values[c * count + i]. Null where it was not asked for: volume |dx/du| of the ranges,
-    // jacobian |du/dy| of the adaptive map. Valid until the next call.
+    // jacobian |du/dy| of the adaptive map, density of a mixture of several channels (0: the point is outside the cube
+    // and has neither values nor volume). Valid until the next call.
     struct Block {
-        const double *values = nullptr, *volume = nullptr, *jacobian = nullptr;
+        const double *values = nullptr, *volume = nullptr, *jacobian = nullptr, *density = nullptr;
         std::size_t count = 0;
     };
     // Random points first, first + 1, ... of the key. `placed`: in their boxes and by the map, if there are any.
@@ -38,17 +53,21 @@ class DeviceSampler {
     // there is one.
     Block sobol(std::uint64_t first, std::size_t each);
 
+    // Points first, first + 1, ... of the mixture's replicates in turn.
+    Block mixture(std::uint64_t first, std::size_t count);
+
     std::size_t replicates() const { return replicates_; }
 
   private:
     Block run(DeviceJob& job, bool mapped);
 
     std::shared_ptr<const DeviceFunction> function_;
-    DeviceArray<double> ranges_, edges_;
+    DeviceArray<double> ranges_, edges_, shares_, bins_, powers_, gaussians_;
     DeviceArray<unsigned int> keys_, columns_;
-    DeviceArray<unsigned long long> box_begin_;
-    DeviceArray<int> strata_;
-    DeviceOutput values_, volume_, jacobian_;
+    DeviceArray<unsigned long long> box_begin_, channel_begin_, channel_first_;
+    DeviceArray<int> strata_, bin_begin_;
+    DeviceOutput values_, volume_, jacobian_, density_;
+    DeviceMixture mixture_{};
     bool in_ranges_ = false, with_volume_ = false, mapped_ = false;
     std::size_t boxes_ = 0, replicates_ = 0;
     int increments_ = 0;

@@ -8,6 +8,7 @@
 #include "montelux/mc/io/shared_library.h"
 #include "montelux/mc/io/system_compiler.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/special.h"
 
 namespace montelux {
 namespace {
@@ -21,11 +22,11 @@ class EmulatedProgram final : public DeviceProgram {
     void run(const DeviceJob& job) override {
         const auto blocks =
             static_cast<unsigned int>((job.count + device_block_threads - 1) / device_block_threads);
-        run_(&job, blocks, device_block_threads);
+        run_(&job, blocks, device_block_threads, normal_quantile);
     }
 
   private:
-    using RunGrid = void (*)(const DeviceJob*, unsigned int, unsigned int);
+    using RunGrid = void (*)(const DeviceJob*, unsigned int, unsigned int, double (*quantile)(double));
 
     SharedLibrary library_;
     RunGrid run_;

@@ -49,6 +49,11 @@ void DeviceValues::draw_sobol(std::uint64_t first, std::uint64_t each) {
     block_ = sampler_.sobol(first, static_cast<std::size_t>(each));
 }
 
+void DeviceValues::draw_mixture(std::uint64_t first, std::uint64_t count) {
+    begin(count);
+    block_ = sampler_.mixture(first, static_cast<std::size_t>(count));
+}
+
 void DeviceValues::read(std::uint64_t number, ValueBatch g, const std::function<void(PointBuffer&)>& points,
                         NonFiniteCount& non_finite) const {
     for (int c = 0; c < g.components(); ++c)
@@ -56,6 +61,38 @@ void DeviceValues::read(std::uint64_t number, ValueBatch g, const std::function<
                     g.component(c).data());
     for (const auto& after : g_.integrand().on_device().after) after(g);
     g_.complete(g, block_.volume ? block_.volume + number : nullptr, points, non_finite);
+}
+
+void DeviceValues::read_inside(std::uint64_t number, std::uint64_t count, ValueBuffer& g,
+                               std::vector<double>& density, const std::function<void(PointBuffer&)>& points,
+                               NonFiniteCount& non_finite) const {
+    std::vector<std::size_t> inside;
+    density.clear();
+    for (std::size_t i = 0; i < count; ++i) {
+        const double q = block_.density ? block_.density[number + i] : 1;
+        if (!(q > 0)) continue;
+        inside.push_back(i);
+        density.push_back(q);
+    }
+    g.resize(inside.size(), g_.components());
+    if (inside.empty()) return;
+    const auto compact = [&](const double* from, double* to) {
+        for (std::size_t j = 0; j < inside.size(); ++j) to[j] = from[number + inside[j]];
+    };
+    for (int c = 0; c < g.components(); ++c)
+        compact(block_.values + static_cast<std::size_t>(c) * block_.count, g.view().component(c).data());
+    std::vector<double> volume(block_.volume ? inside.size() : 0);
+    if (block_.volume) compact(block_.volume, volume.data());
+    for (const auto& after : g_.integrand().on_device().after) after(g);
+    g_.complete(
+        g, block_.volume ? volume.data() : nullptr,
+        [&](PointBuffer& x) {
+            PointBuffer all(count, x.dimensions());
+            points(all);
+            for (int d = 0; d < x.dimensions(); ++d)
+                for (std::size_t j = 0; j < inside.size(); ++j) x(j, d) = all(inside[j], d);
+        },
+        non_finite);
 }
 
 } // namespace montelux

@@ -13,7 +13,7 @@ namespace montelux {
 namespace {
 
 constexpr double few_points = 1 / 16.; // points behind the variance, below which they count as few
-constexpr double significance = 1e-3;
+constexpr double chi_squared_significance = 1e-3;
 // Relative to the value: rounding must not make constants disagree with themselves.
 constexpr double rounding_error = 1e-13;
 
@@ -116,7 +116,7 @@ void IterationAverage::tally(Tally& tally) const {
     if (degrees_of_freedom_ == 0) return;
     tally.chi_squared = *std::max_element(chi_squared_.begin(), chi_squared_.end());
     const double p = chi_squared_p_value(tally.chi_squared, degrees_of_freedom_);
-    if (p * static_cast<double>(value_.size()) >= significance) return;
+    if (p * static_cast<double>(value_.size()) >= chi_squared_significance) return;
     char text[192];
     std::snprintf(text, sizeof text,
                   "the iterations disagree: chi-squared %.3g for %d degrees of freedom, p = %.2g",
