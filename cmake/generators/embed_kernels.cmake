@@ -3,7 +3,7 @@
 file(READ ${FOLDER}/device_job.h job)
 string(REPLACE "#pragma once\n" "" job "${job}")
 set(texts "const std::string_view device_job_text = R\"kernel(${job})kernel\";\n")
-foreach(name points mixture evaluate)
+foreach(name points mixture evaluate summarise)
     file(READ ${FOLDER}/${name}.cu text)
     string(APPEND texts "const std::string_view ${name}_kernel_text = R\"kernel(${text})kernel\";\n")
 endforeach()

@@ -85,8 +85,8 @@ class CudaProgram final : public DeviceProgram {
                         "the NVIDIA driver is too old for the code that this NVRTC makes; update the "
                         "driver, or name an older NVRTC in MONTELUX_NVRTC");
         cuda_->driver.check(loaded, "the kernels cannot be loaded");
-        const CudaDriver::Result found =
-            cuda_->driver.find_function(&evaluate_, module_, "montelux_evaluate");
+        CudaDriver::Result found = cuda_->driver.find_function(&evaluate_, module_, "montelux_evaluate");
+        if (found == 0) found = cuda_->driver.find_function(&summarise_, module_, "montelux_summarise");
         if (found != 0) cuda_->driver.unload_module(module_);
         cuda_->driver.check(found, "the kernels cannot be found");
     }
@@ -101,13 +101,8 @@ class CudaProgram final : public DeviceProgram {
         if (job.count == 0) return;
         const CudaContextOwner::Visit visit(*cuda_);
         visit.check();
-        const auto blocks =
-            static_cast<unsigned int>((job.count + device_block_threads - 1) / device_block_threads);
-        DeviceJob argument = job;
-        std::array<void*, 1> parameters{&argument};
-        cuda_->driver.check(cuda_->driver.launch(evaluate_, blocks, 1, 1, device_block_threads, 1, 1, 0,
-                                                 nullptr, parameters.data(), nullptr),
-                            "a kernel cannot be started");
+        launch(evaluate_, job, job.count, device_block_threads);
+        if (job.summaries != nullptr) launch(summarise_, job, job.batches, device_summary_threads);
         const CudaDriver::Result ended = cuda_->driver.synchronise();
         cuda_->driver.check(ended, ended == CudaDriver::launch_timeout
                                        ? "a kernel was stopped, because this GPU also drives a screen, which "
@@ -116,9 +111,16 @@ class CudaProgram final : public DeviceProgram {
     }
 
   private:
+    void launch(CudaDriver::Function kernel, DeviceJob job, unsigned long long all, unsigned int threads) {
+        std::array<void*, 1> parameters{&job};
+        cuda_->driver.check(cuda_->driver.launch(kernel, device_blocks(all, threads), 1, 1, threads, 1, 1, 0,
+                                                 nullptr, parameters.data(), nullptr),
+                            "a kernel cannot be started");
+    }
+
     std::shared_ptr<const CudaContextOwner> cuda_;
     CudaDriver::Module module_ = nullptr;
-    CudaDriver::Function evaluate_ = nullptr;
+    CudaDriver::Function evaluate_ = nullptr, summarise_ = nullptr;
 };
 
 class CudaDevice final : public Device {

@@ -40,7 +40,7 @@ class DeviceFunction {
     std::unique_ptr<DeviceProgram> program_;
     mutable std::unique_ptr<DeviceProgram> mixture_program_;
     mutable DeviceArray<double> points_;
-    mutable DeviceOutput values_;
+    mutable DeviceOutput<double> values_;
 };
 
 } // namespace montelux

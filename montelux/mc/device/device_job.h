@@ -28,6 +28,18 @@ struct DeviceMixture {
     const unsigned long long *channel_begin, *channel_first;
 };
 
+// Points of a batch.
+enum DeviceBatch { device_batch = 1024 };
+
+// Of the values f(x) of a batch, and of these times the change of volume: g.
+struct DeviceSummary {
+    double sum, squares;             // of g and of g^2, in the order of lane_sum
+    double mean, squared_deviations; // of g, in the order of SampleMoments
+    double least, greatest;          // of g
+    double raw_least, raw_greatest;  // of f
+    unsigned long long finite;       // are all f and g? Otherwise the other numbers say nothing
+};
+
 // Which points of the unit cube to take, and where to write. Pointers are to the device's memory. Arrays of n points
 // are structures of arrays: number c of point i is at [c * n + i].
 struct DeviceJob {
@@ -62,6 +74,12 @@ struct DeviceJob {
     // Lower and upper end of each dimension; null: the unit cube.
     const double* ranges;
     const double* parameters; // of the integrand
+
+    // Of an integrand of one component: each batch is summarised, of points_each points in turn, where summaries is not
+    // null. The change of volume is `factor` where `volume` is null.
+    DeviceSummary* summaries;
+    unsigned long long batches;
+    double factor;
 
     // Of mixture points outside the cube only the density is written.
     double* values;   // f(x), each component

@@ -49,6 +49,7 @@ std::string kernel_text(const FunctionSource& f, int dimensions, KernelPoints po
     add("points.cu", points_kernel_text);
     if (mixture) add("mixture.cu", mixture_kernel_text);
     add("evaluate.cu", evaluate_kernel_text);
+    add("summarise.cu", summarise_kernel_text);
     return text;
 }
 

@@ -23,6 +23,7 @@ enum class KernelPoints { simple, mixture };
 std::string kernel_text(const FunctionSource& f, int dimensions, KernelPoints points = KernelPoints::simple);
 
 // device_job.h and the .cu files.
-extern const std::string_view device_job_text, points_kernel_text, mixture_kernel_text, evaluate_kernel_text;
+extern const std::string_view device_job_text, points_kernel_text, mixture_kernel_text, evaluate_kernel_text,
+    summarise_kernel_text;
 
 } // namespace montelux

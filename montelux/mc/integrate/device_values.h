@@ -32,6 +32,13 @@ class DeviceValues {
         const std::uint64_t bytes = sizeof(double) * (static_cast<std::uint64_t>(g_.components()) + 2);
         return std::clamp(most_bytes / bytes, least, most);
     }
+    // Blocks are summed on the device from here on, if the integrand has one component. Values are copied of batches
+    // alone whose sums do not say everything: with values that are not finite, that must be scaled, or that are larger
+    // in magnitude than `floor`, that of their tail.
+    void summarise_above(double floor);
+    // Of the batch that begins at that point of the block; null where its values were copied, for read().
+    const DeviceSummary* summary(std::uint64_t number) const;
+
     // The points of fill_random. `placed`: in the sampler's boxes and by its map.
     void draw_random(std::uint64_t seed, std::uint32_t stream, std::uint64_t first, std::uint64_t count,
                      bool placed = false);
@@ -59,10 +66,15 @@ class DeviceValues {
   private:
     explicit DeviceValues(const Evaluator& g);
     void begin(std::uint64_t count) const;
+    // `each`: points of a replicate.
+    void copy_what_sums_hide(std::uint64_t each);
 
     Evaluator g_;
     DeviceSampler sampler_;
     DeviceSampler::Block block_;
+    double floor_ = 0;
+    std::uint64_t each_ = 0;
+    std::vector<char> copied_; // of each batch
 };
 
 // sum_batches over points that a device draws, if there is one: draw(first, count) has it evaluate a block of them, and

@@ -42,7 +42,7 @@ const FunctionSource square{.text = "double integrand(int, const double* x) { re
 std::vector<double> random_values(const std::string& device) {
     DeviceSampler sampler(std::make_shared<const DeviceFunction>(Device::open(device), square, 2));
     const std::vector<double> ends{0, 2, -1, 1};
-    sampler.set_ranges(ends, true);
+    sampler.set_ranges(ends, 0);
     const DeviceSampler::Block block = sampler.random(1234, 5, 10, 1000, false);
     std::vector<double> all(block.values, block.values + block.count);
     all.insert(all.end(), block.volume, block.volume + block.count);
@@ -52,6 +52,27 @@ std::vector<double> random_values(const std::string& device) {
 TEST_F(CudaDeviceTest, ComputesWhatTheEmulationComputes) {
     EXPECT_EQ(Device::open("cuda")->description(), "Fake GPU, compute capability 9.0");
     EXPECT_EQ(random_values("cuda"), random_values("emulated"));
+}
+
+TEST_F(CudaDeviceTest, SumsWhatTheEmulationSums) {
+    const auto summaries = [](const std::string& device) {
+        DeviceSampler sampler(std::make_shared<const DeviceFunction>(Device::open(device), square, 2));
+        sampler.set_summaries(true);
+        const DeviceSampler::Block block = sampler.random(1234, 5, 10, 50'000, false);
+        std::vector<double> all;
+        for (std::size_t b = 0; b < block.batches; ++b) {
+            const DeviceSummary& s = block.summaries[b];
+            all.insert(all.end(), {s.sum, s.squares, s.mean, s.squared_deviations, s.least, s.greatest});
+        }
+        // Values are copied when they are asked for.
+        sampler.fetch_values(49'900, 100);
+        all.insert(all.end(), block.values + 49'900, block.values + 50'000);
+        return all;
+    };
+    const std::vector<double> there = summaries("cuda");
+    EXPECT_EQ(there.size(), 6u * 49 + 100);
+    EXPECT_EQ(there, summaries("emulated"));
+    EXPECT_NEAR(there[2], 5 / 6., 0.1);
 }
 
 // Of a uniform channel and a Gaussian: coordinates and densities of points, 0 outside the cube.

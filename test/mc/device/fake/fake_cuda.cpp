@@ -97,8 +97,10 @@ EXPORT int cuModuleLoadData(void** module, const void* image) {
 }
 EXPORT int cuModuleUnload(void* module) { return ::dlclose(module); }
 EXPORT int cuModuleGetFunction(void** function, void* module, const char* name) {
-    if (std::strcmp(name, "montelux_evaluate") != 0) return 500;
-    *function = ::dlsym(module, "montelux_run_grid");
+    const std::string kernel = name;
+    *function = kernel == "montelux_evaluate"    ? ::dlsym(module, "montelux_run_grid")
+                : kernel == "montelux_summarise" ? ::dlsym(module, "montelux_run_summaries")
+                                                 : nullptr;
     return *function != nullptr ? in_context("cuModuleGetFunction") : 500;
 }
 EXPORT int cuLaunchKernel(void* function, unsigned int grid_x, unsigned int grid_y, unsigned int grid_z,
