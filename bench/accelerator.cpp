@@ -114,7 +114,7 @@ void run(const std::string& name, std::uint64_t evaluations) {
         const Integrand there = Integrand::compiled(compiled);
         std::printf("| %s, %d variables | points alone | | | %.3g | | |\n", f.name, f.dimensions,
                     rate_alone(compiled, evaluations));
-        for (const char* method : {"basic", "quasi", "vegas", "vegas_sobol"}) {
+        for (const char* method : {"basic", "quasi", "vegas", "vegas_sobol", "adaptive"}) {
             timed(there, f.dimensions, method, 100'000); // the device's memory
             const Timed a = timed(here, f.dimensions, method, evaluations);
             const Timed b = timed(there, f.dimensions, method, evaluations);

@@ -151,9 +151,10 @@ def integrate(
     for long; 0: one for each processor. Slow functions of Python take `workers`, processes that evaluate f; 0: one
     for each processor.
 
-    device: 'cuda' draws and evaluates the points on a GPU, for the methods basic, quasi, vegas and vegas_sobol. f is
-    then a formula such as 'exp(-x*x)*y' (variables x, y, z, or x1 to xn of more than three), a list of formulas, or a
-    source in C or CUDA C++ with the function double integrand(int n, const double *x); docs/accelerator.md.
+    device: 'cuda' draws and evaluates the points on a GPU, for the methods adaptive, basic, quasi, vegas and
+    vegas_sobol. f is then a formula such as 'exp(-x*x)*y' (variables x, y, z, or x1 to xn of more than three), a list
+    of formulas, or a source in C or CUDA C++ with the function double integrand(int n, const double *x);
+    docs/accelerator.md.
     'emulated' runs the same code on the processor, to check it.
 
     components: the m of f's shape (n, m); 0 for shape (n,). Without it f is called once more, with five to

@@ -27,7 +27,7 @@ def squares(x):
     return total
 
 
-@pytest.mark.parametrize("method", ["basic", "quasi", "vegas", "vegas_sobol"])
+@pytest.mark.parametrize("method", ["basic", "quasi", "vegas", "vegas_sobol", "adaptive"])
 def test_a_source_gives_the_bits_of_numpy(method):
     arguments = {"evaluations": 20_000, "seed": 5}
     here = montelux.integrate(squares, [(0, 1)] * 5, method, **arguments)
@@ -65,7 +65,7 @@ def test_components_and_logarithms():
         (dict(f=["x", "1"], components=3, device="emulated"), "components: 3 was given with 2 formulas"),
         (dict(f="x", workers=2, device="emulated"), "workers: it is for functions of Python, and the integrand is compiled"),
         (dict(f="double integrand(int n, double *x) { return a; }", device="emulated"), "was not declared"),
-        (dict(f="x", method="adaptive", device="emulated"), "the method 'adaptive' does not run on a device"),
+        (dict(f="x", method="auto", device="emulated"), "the method 'auto' does not run on a device; expected adaptive, vegas"),
     ],
 )
 def test_mistakes(arguments, message):

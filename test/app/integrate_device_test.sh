@@ -9,7 +9,7 @@ same() {
     "$montelux" integrate "$@" --quiet --device emulated >there 2>&1 || fail "$* --device emulated: $(cat there)"
     cmp -s here there || fail "$*: $(cat there) on the emulated device instead of $(cat here)"
 }
-for method in basic quasi vegas vegas_sobol; do
+for method in basic quasi vegas vegas_sobol adaptive; do
     same 'exp(-x^2)*cos(y)' --over x=0:inf --over y=0:pi/2 --method $method --evaluations 50k --seed 3
 done
 same 1 'a*x^2' --let a=3 --over x=-1:2 --method vegas --evaluations 20k
@@ -53,8 +53,8 @@ wait $job && fail "SIGTERM while the emulation compiles: exit code 0"
 
 # Mistakes.
 expect 2 "there is no device 'gpu'; expected one of cuda, emulated" integrate x --over x=0:1 --method basic --device gpu
-expect 2 "the method 'auto' does not run on a device, and is the default; expected vegas, vegas_sobol, quasi or basic" integrate x --over x=0:1 --device emulated
-expect 2 "the method 'adaptive' does not run on a device; expected vegas, vegas_sobol, quasi or basic" integrate x --over x=0:1 --method adaptive --device emulated
+expect 2 "the method 'auto' does not run on a device, and is the default; expected adaptive, vegas, vegas_sobol, quasi or basic" integrate x --over x=0:1 --device emulated
+expect 2 "the method 'metropolis' does not run on a device; expected adaptive, vegas, vegas_sobol, quasi or basic" integrate x --over x=0:1 --method metropolis --device emulated
 expect 2 "there is no function 'sqt'" integrate 'sqt(x)' --over x=0:1 --method basic --device emulated
 expect 2 "a device compiles sources and does not call libraries" integrate --library f.so --over x=0:1 --method basic --device emulated
 expect 2 "the points of a device stay there" integrate x --over x=0:1 --method basic --device emulated --points p.csv

@@ -43,9 +43,25 @@ class CudaContextOwner {
     CudaContextOwner(const CudaContextOwner&) = delete;
     CudaContextOwner& operator=(const CudaContextOwner&) = delete;
 
-    // Calls of the driver concern the context of the calling thread.
-    bool enter_quietly() const noexcept { return driver.set_context(context_) == 0; }
-    void enter() const { driver.check(driver.set_context(context_), "the GPU's context cannot be entered"); }
+    // Calls of the driver concern the current context of the calling thread. This one is current while a Visit lives;
+    // then the caller's is again, which may be another library's.
+    class Visit {
+      public:
+        explicit Visit(const CudaContextOwner& cuda)
+            : driver_(cuda.driver), result_(driver_.push_context(cuda.context_)) {}
+        ~Visit() {
+            CudaDriver::Context left = nullptr;
+            if (entered()) driver_.pop_context(&left);
+        }
+        Visit(const Visit&) = delete;
+        Visit& operator=(const Visit&) = delete;
+        bool entered() const { return result_ == 0; }
+        void check() const { driver_.check(result_, "the GPU's context cannot be entered"); }
+
+      private:
+        const CudaDriver& driver_;
+        CudaDriver::Result result_;
+    };
 
     CudaDriver driver;
     CudaDriver::DeviceNumber number = 0;
@@ -60,7 +76,8 @@ class CudaProgram final : public DeviceProgram {
   public:
     CudaProgram(std::shared_ptr<const CudaContextOwner> cuda, const std::string& image)
         : cuda_(std::move(cuda)) {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         const CudaDriver::Result loaded = cuda_->driver.load_module(&module_, image.data());
         if (loaded == CudaDriver::unsupported_ptx || loaded == CudaDriver::no_binary ||
             loaded == CudaDriver::invalid_ptx)
@@ -68,27 +85,24 @@ class CudaProgram final : public DeviceProgram {
                         "the NVIDIA driver is too old for the code that this NVRTC makes; update the "
                         "driver, or name an older NVRTC in MONTELUX_NVRTC");
         cuda_->driver.check(loaded, "the kernels cannot be loaded");
-        const CudaDriver::Result found =
-            cuda_->driver.find_function(&evaluate_, module_, "montelux_evaluate");
+        CudaDriver::Result found = cuda_->driver.find_function(&evaluate_, module_, "montelux_evaluate");
+        if (found == 0) found = cuda_->driver.find_function(&summarise_, module_, "montelux_summarise");
         if (found != 0) cuda_->driver.unload_module(module_);
         cuda_->driver.check(found, "the kernels cannot be found");
     }
     ~CudaProgram() override {
-        if (cuda_->enter_quietly()) cuda_->driver.unload_module(module_);
+        if (const CudaContextOwner::Visit visit(*cuda_); visit.entered())
+            cuda_->driver.unload_module(module_);
     }
     CudaProgram(const CudaProgram&) = delete;
     CudaProgram& operator=(const CudaProgram&) = delete;
 
     void run(const DeviceJob& job) override {
         if (job.count == 0) return;
-        cuda_->enter();
-        const auto blocks =
-            static_cast<unsigned int>((job.count + device_block_threads - 1) / device_block_threads);
-        DeviceJob argument = job;
-        std::array<void*, 1> parameters{&argument};
-        cuda_->driver.check(cuda_->driver.launch(evaluate_, blocks, 1, 1, device_block_threads, 1, 1, 0,
-                                                 nullptr, parameters.data(), nullptr),
-                            "a kernel cannot be started");
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
+        launch(evaluate_, job, job.count, device_block_threads);
+        if (job.summaries != nullptr) launch(summarise_, job, job.batches, device_summary_threads);
         const CudaDriver::Result ended = cuda_->driver.synchronise();
         cuda_->driver.check(ended, ended == CudaDriver::launch_timeout
                                        ? "a kernel was stopped, because this GPU also drives a screen, which "
@@ -97,9 +111,16 @@ class CudaProgram final : public DeviceProgram {
     }
 
   private:
+    void launch(CudaDriver::Function kernel, DeviceJob job, unsigned long long all, unsigned int threads) {
+        std::array<void*, 1> parameters{&job};
+        cuda_->driver.check(cuda_->driver.launch(kernel, device_blocks(all, threads), 1, 1, threads, 1, 1, 0,
+                                                 nullptr, parameters.data(), nullptr),
+                            "a kernel cannot be started");
+    }
+
     std::shared_ptr<const CudaContextOwner> cuda_;
     CudaDriver::Module module_ = nullptr;
-    CudaDriver::Function evaluate_ = nullptr;
+    CudaDriver::Function evaluate_ = nullptr, summarise_ = nullptr;
 };
 
 class CudaDevice final : public Device {
@@ -113,30 +134,35 @@ class CudaDevice final : public Device {
     }
 
     void* allocate(std::size_t bytes) override {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         CudaDriver::Pointer memory = 0;
         check_memory(cuda_->driver.allocate(&memory, bytes), bytes, "the GPU");
         return reinterpret_cast<void*>(static_cast<std::uintptr_t>(memory));
     }
     void release(void* memory) noexcept override {
-        if (cuda_->enter_quietly()) cuda_->driver.release(address(memory));
+        if (const CudaContextOwner::Visit visit(*cuda_); visit.entered())
+            cuda_->driver.release(address(memory));
     }
     void* allocate_host(std::size_t bytes) override {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         void* memory = nullptr;
         check_memory(cuda_->driver.allocate_host(&memory, bytes), bytes, "the processor, for copies");
         return memory;
     }
     void release_host(void* memory) noexcept override {
-        if (cuda_->enter_quietly()) cuda_->driver.release_host(memory);
+        if (const CudaContextOwner::Visit visit(*cuda_); visit.entered()) cuda_->driver.release_host(memory);
     }
     void copy_in(void* to, const void* from, std::size_t bytes) override {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         cuda_->driver.check(cuda_->driver.copy_in(address(to), from, bytes),
                             "numbers cannot be copied to the GPU");
     }
     void copy_out(void* to, const void* from, std::size_t bytes) override {
-        cuda_->enter();
+        const CudaContextOwner::Visit visit(*cuda_);
+        visit.check();
         cuda_->driver.check(cuda_->driver.copy_out(to, address(from), bytes),
                             "numbers cannot be copied from the GPU");
     }

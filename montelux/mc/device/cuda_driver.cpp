@@ -29,7 +29,8 @@ CudaDriver::CudaDriver() {
     find(device_attribute, "cuDeviceGetAttribute");
     find(retain_context, "cuDevicePrimaryCtxRetain");
     find(release_context, "cuDevicePrimaryCtxRelease_v2");
-    find(set_context, "cuCtxSetCurrent");
+    find(push_context, "cuCtxPushCurrent_v2");
+    find(pop_context, "cuCtxPopCurrent_v2");
     find(synchronise, "cuCtxSynchronize");
     find(load_module, "cuModuleLoadData");
     find(unload_module, "cuModuleUnload");

@@ -35,7 +35,8 @@ struct CudaDriver {
     Result (*device_attribute)(int*, int attribute, DeviceNumber) = nullptr;
     Result (*retain_context)(Context*, DeviceNumber) = nullptr;
     Result (*release_context)(DeviceNumber) = nullptr;
-    Result (*set_context)(Context) = nullptr; // of the calling thread
+    Result (*push_context)(Context) = nullptr; // onto the calling thread's stack, whose top is current
+    Result (*pop_context)(Context*) = nullptr;
     Result (*synchronise)() = nullptr;
     Result (*load_module)(Module*, const void* image) = nullptr;
     Result (*unload_module)(Module) = nullptr;

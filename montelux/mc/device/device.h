@@ -13,12 +13,19 @@ namespace montelux {
 
 // Threads in a block of a grid.
 inline constexpr unsigned int device_block_threads = 128;
+// The same for summaries, of which there are few.
+inline constexpr unsigned int device_summary_threads = 32;
+
+// Blocks of a grid for that many threads.
+constexpr unsigned int device_blocks(unsigned long long all, unsigned int threads) {
+    return static_cast<unsigned int>((all + threads - 1) / threads);
+}
 
 // The kernels of one integrand, compiled.
 class DeviceProgram {
   public:
     virtual ~DeviceProgram() = default;
-    // Evaluates the points of a job, and returns when it is done. Throws Error.
+    // Evaluates the points of a job, summarises them where that is asked for, and returns when it is done. Throws Error.
     virtual void run(const DeviceJob& job) = 0;
 };
 

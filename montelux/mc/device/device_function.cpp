@@ -27,9 +27,10 @@ std::string declaration(const FunctionSource& f) {
                : "void " + f.function + "(int n, const double *x, int m, double *y" + parameters + ")";
 }
 
-std::unique_ptr<DeviceProgram> compile(Device& device, const FunctionSource& source, int dimensions) {
+std::unique_ptr<DeviceProgram> compile(Device& device, const FunctionSource& source, int dimensions,
+                                       KernelPoints points) {
     try {
-        return device.compile(kernel_text(source, dimensions), source.file);
+        return device.compile(kernel_text(source, dimensions, points), source.file);
     } catch (const Error& error) {
         // An error in the kernel is one of the call, since the rest of it always compiles.
         const std::string text = error.what();
@@ -41,8 +42,8 @@ std::unique_ptr<DeviceProgram> compile(Device& device, const FunctionSource& sou
 } // namespace
 
 DeviceFunction::DeviceFunction(std::shared_ptr<Device> device, const FunctionSource& source, int dimensions)
-    : device_(std::move(device)), dimensions_(dimensions), components_(std::max(1, source.components)),
-      parameters_(device_), points_(device_), values_(device_) {
+    : device_(std::move(device)), source_(source), dimensions_(dimensions),
+      components_(std::max(1, source.components)), parameters_(device_), points_(device_), values_(device_) {
     if (dimensions < 1 || dimensions > most_dimensions)
         throw Error("device", "expected 1 to " + std::to_string(most_dimensions) + " variables, got " +
                                   std::to_string(dimensions));
@@ -54,13 +55,18 @@ DeviceFunction::DeviceFunction(std::shared_ptr<Device> device, const FunctionSou
                     "'" + source.function +
                         "' is not the name of a function; expected FILE:FUNCTION, or FILE alone for "
                         "the function `integrand`");
-    program_ = compile(*device_, source, dimensions);
+    program_ = compile(*device_, source, dimensions, KernelPoints::simple);
     parameters_.assign(source.parameters);
 }
 
 void DeviceFunction::run(DeviceJob job) const {
     job.parameters = parameters_.data();
-    program_->run(job);
+    (job.kind == device_mixture_points ? mixture_program_ : program_)->run(job);
+}
+
+void DeviceFunction::prepare_mixtures() const {
+    const std::lock_guard lock(mutex_);
+    if (!mixture_program_) mixture_program_ = compile(*device_, source_, dimensions_, KernelPoints::mixture);
 }
 
 void DeviceFunction::at(const double* x, std::size_t n, std::size_t stride, double* y,

@@ -28,15 +28,19 @@ class DeviceFunction {
 
     // Completes a job by the parameters, and runs it.
     void run(DeviceJob job) const;
+    // Compiles the kernel for points of mixtures, unless that was done: before the first job of them.
+    void prepare_mixtures() const;
 
   private:
     std::shared_ptr<Device> device_;
+    FunctionSource source_;
     int dimensions_, components_;
     DeviceArray<double> parameters_;
     mutable std::mutex mutex_;
     std::unique_ptr<DeviceProgram> program_;
+    mutable std::unique_ptr<DeviceProgram> mixture_program_;
     mutable DeviceArray<double> points_;
-    mutable DeviceOutput values_;
+    mutable DeviceOutput<double> values_;
 };
 
 } // namespace montelux

@@ -43,7 +43,8 @@ class DeviceArray {
     std::size_t capacity_ = 0;
 };
 
-// Numbers that the device wrote, and their copy for the processor.
+// What the device wrote, and its copy for the processor.
+template <typename T>
 class DeviceOutput {
   public:
     explicit DeviceOutput(std::shared_ptr<Device> device) : array_(device), device_(std::move(device)) {}
@@ -53,23 +54,30 @@ class DeviceOutput {
     DeviceOutput(const DeviceOutput&) = delete;
     DeviceOutput& operator=(const DeviceOutput&) = delete;
 
-    double* reserve(std::size_t size) { return array_.reserve(size); }
-    // The first `size` numbers; valid until the next call.
-    const double* fetch(std::size_t size) {
-        if (size > capacity_) {
-            if (host_ != nullptr) device_->release_host(std::exchange(host_, nullptr));
-            capacity_ = 0;
-            host_ = static_cast<double*>(device_->allocate_host(size * sizeof(double)));
-            capacity_ = size;
-        }
-        device_->copy_out(host_, array_.data(), size * sizeof(double));
+    T* reserve(std::size_t size) { return array_.reserve(size); }
+    // Room for the copies of `size` elements, which fetch_part() fills in; valid until more are asked for.
+    const T* reserve_copies(std::size_t size) {
+        if (size <= capacity_) return host_;
+        if (host_ != nullptr) device_->release_host(std::exchange(host_, nullptr));
+        capacity_ = 0;
+        host_ = static_cast<T*>(device_->allocate_host(size * sizeof(T)));
+        capacity_ = size;
+        return host_;
+    }
+    void fetch_part(std::size_t first, std::size_t count) {
+        device_->copy_out(host_ + first, array_.data() + first, count * sizeof(T));
+    }
+    // The first `size` elements.
+    const T* fetch(std::size_t size) {
+        reserve_copies(size);
+        fetch_part(0, size);
         return host_;
     }
 
   private:
-    DeviceArray<double> array_;
+    DeviceArray<T> array_;
     std::shared_ptr<Device> device_;
-    double* host_ = nullptr;
+    T* host_ = nullptr;
     std::size_t capacity_ = 0;
 };
 

@@ -8,6 +8,7 @@
 #include "montelux/mc/io/shared_library.h"
 #include "montelux/mc/io/system_compiler.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/special.h"
 
 namespace montelux {
 namespace {
@@ -16,19 +17,22 @@ class EmulatedProgram final : public DeviceProgram {
   public:
     explicit EmulatedProgram(SharedLibrary library) : library_(std::move(library)) {
         run_ = library_.find<RunGrid>("montelux_run_grid");
-        if (run_ == nullptr) throw Error("emulated device", "the compiled kernels have no montelux_run_grid");
+        summarise_ = library_.find<RunGrid>("montelux_run_summaries");
+        if (run_ == nullptr || summarise_ == nullptr)
+            throw Error("emulated device", "the compiled kernels have no montelux_run_grid");
     }
     void run(const DeviceJob& job) override {
-        const auto blocks =
-            static_cast<unsigned int>((job.count + device_block_threads - 1) / device_block_threads);
-        run_(&job, blocks, device_block_threads);
+        run_(&job, device_blocks(job.count, device_block_threads), device_block_threads, normal_quantile);
+        if (job.summaries != nullptr)
+            summarise_(&job, device_blocks(job.batches, device_summary_threads), device_summary_threads,
+                       normal_quantile);
     }
 
   private:
-    using RunGrid = void (*)(const DeviceJob*, unsigned int, unsigned int);
+    using RunGrid = void (*)(const DeviceJob*, unsigned int, unsigned int, double (*quantile)(double));
 
     SharedLibrary library_;
-    RunGrid run_;
+    RunGrid run_, summarise_;
 };
 
 class EmulatedDevice final : public Device {

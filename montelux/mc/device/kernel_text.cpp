@@ -18,6 +18,7 @@ struct montelux_index {
     unsigned int x, y, z;
 };
 static thread_local montelux_index blockIdx, blockDim, threadIdx;
+static thread_local double (*normcdfinv)(double);
 #endif
 )";
 
@@ -32,16 +33,23 @@ std::string quoted(const std::string& text) {
 
 } // namespace
 
-std::string kernel_text(const FunctionSource& f, int dimensions) {
+std::string kernel_text(const FunctionSource& f, int dimensions, KernelPoints points) {
+    const bool mixture = points == KernelPoints::mixture;
     std::string text(prelude);
     text += device_job_text;
     text += "#line 1 \"" + quoted(f.file) + "\"\n" + f.text + "\n";
-    text += "#line 1 \"montelux/mc/device/evaluate.cu\"\n";
     text += "#define MONTELUX_FUNCTION ::" + f.function + "\n";
     text += "#define MONTELUX_DIMENSIONS " + std::to_string(dimensions) + "\n";
     text += "#define MONTELUX_COMPONENTS " + std::to_string(f.components) + "\n";
     text += std::string("#define MONTELUX_PARAMETERS ") + (f.parameters.empty() ? "0" : "1") + "\n";
-    text += evaluate_kernel_text;
+    text += std::string("#define MONTELUX_MIXTURE ") + (mixture ? "1" : "0") + "\n";
+    const auto add = [&text](const char* name, std::string_view kernel) {
+        text += "#line 1 \"montelux/mc/device/" + std::string(name) + "\"\n" + std::string(kernel);
+    };
+    add("points.cu", points_kernel_text);
+    if (mixture) add("mixture.cu", mixture_kernel_text);
+    add("evaluate.cu", evaluate_kernel_text);
+    add("summarise.cu", summarise_kernel_text);
     return text;
 }
 

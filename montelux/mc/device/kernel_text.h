@@ -18,10 +18,12 @@ struct FunctionSource {
     std::vector<double> parameters = {};
 };
 
-// For points of that many coordinates.
-std::string kernel_text(const FunctionSource& f, int dimensions);
+// For points of that many coordinates: of all kinds but those of mixtures, or these alone.
+enum class KernelPoints { simple, mixture };
+std::string kernel_text(const FunctionSource& f, int dimensions, KernelPoints points = KernelPoints::simple);
 
-// device_job.h and evaluate.cu.
-extern const std::string_view device_job_text, evaluate_kernel_text;
+// device_job.h and the .cu files.
+extern const std::string_view device_job_text, points_kernel_text, mixture_kernel_text, evaluate_kernel_text,
+    summarise_kernel_text;
 
 } // namespace montelux

@@ -35,7 +35,7 @@ constexpr double second_share = 0.2;      // and the share of sampling's evaluat
 constexpr double finest_comparison = 1e-5, coarsest_comparison = 0.03;
 constexpr double comparable = 1.5;  // largest ratio of sampling's error to cubature's when both are compared
 constexpr double disagreeing = 2.5; // standard errors; a false alarm costs evaluations only
-constexpr double surprising = 4;    // growth of the error that makes a new problem
+constexpr double surprising_growth = 4; // growth of the error that makes a new problem
 
 // What Adaptive needs for a relative error, roughly, as measured on Genz's families in 5 and 8 dimensions
 // (docs/integration.md): 10,000 evaluations for 1e-3, 35,000 for 1e-4.
@@ -311,7 +311,7 @@ class AutoEstimator final : public Estimator {
         }
         const double cost = static_cast<double>(tally.evaluations - tally.check_evaluations);
         // After a surprise of the random check the earlier errors do not predict how fast the error falls.
-        if (!ratios_.empty() && ratio > surprising * std::max(1.0, ratios_.back())) {
+        if (!ratios_.empty() && ratio > surprising_growth * std::max(1.0, ratios_.back())) {
             ratios_.clear();
             costs_.clear();
             begin_ = cost;

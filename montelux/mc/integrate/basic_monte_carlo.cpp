@@ -20,6 +20,7 @@ class BasicEstimator final : public Estimator {
         const std::uint64_t size = next_step_size(done, 4096, request.max_evaluations);
         if (size == 0) return StepOutcome::exhausted;
         const Evaluator& g = problem_.evaluator;
+        if (device_) device_->summarise_above(sum_.extremes.tail().floor());
         auto sum = sum_blocks(
             size, device_.get(),
             [&](std::uint64_t first, std::uint64_t count) {
@@ -29,6 +30,8 @@ class BasicEstimator final : public Estimator {
                 return SampleMoments{empty_moments(), {}, sum_.extremes.empty()};
             },
             [&](std::uint64_t first, std::uint64_t count, std::uint64_t number, SampleMoments& to) {
+                if (const DeviceSummary* s = device_ ? device_->summary(number) : nullptr)
+                    return to.add(*s, count);
                 ValueBuffer values(count, g.components());
                 const auto fill = [&](PointBuffer& u) { fill_random(u, problem_.seed, 0, done + first); };
                 if (device_) {

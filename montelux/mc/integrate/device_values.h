@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "montelux/mc/device/device_sampler.h"
 #include "montelux/mc/integrate/sampling.h"
@@ -21,9 +22,9 @@ class DeviceValues {
     static std::unique_ptr<DeviceValues> of(const Evaluator& g);
 
     DeviceSampler& sampler() { return sampler_; }
-    // Points of a block: as many as the integrand asks for, if memory allows.
+    // Points of a block: as many as the integrand asks for, if memory allows, and at least a batch.
     std::uint64_t block_size() const {
-        return std::min<std::uint64_t>(g_.integrand().on_device().block, most_points());
+        return std::clamp<std::uint64_t>(g_.integrand().on_device().block, batch_size, most_points());
     }
     // Points of which a block has room for the values.
     std::uint64_t most_points() const {
@@ -31,6 +32,13 @@ class DeviceValues {
         const std::uint64_t bytes = sizeof(double) * (static_cast<std::uint64_t>(g_.components()) + 2);
         return std::clamp(most_bytes / bytes, least, most);
     }
+    // Blocks are summed on the device from here on, if the integrand has one component. Values are copied of batches
+    // alone whose sums do not say everything: with values that are not finite, that must be scaled, or that are larger
+    // in magnitude than `floor`, that of their tail.
+    void summarise_above(double floor);
+    // Of the batch that begins at that point of the block; null where its values were copied, for read().
+    const DeviceSummary* summary(std::uint64_t number) const;
+
     // The points of fill_random. `placed`: in the sampler's boxes and by its map.
     void draw_random(std::uint64_t seed, std::uint32_t stream, std::uint64_t first, std::uint64_t count,
                      bool placed = false);
@@ -39,10 +47,17 @@ class DeviceValues {
     void set_replicates(std::uint64_t seed, std::uint32_t first_replicate, int replicates);
     void draw_sobol(std::uint64_t first, std::uint64_t each);
 
+    // Points first, first + 1, ... of the mixture that the sampler was given.
+    void draw_mixture(std::uint64_t first, std::uint64_t count);
+
     // Values of g at points number, number + 1, ... of the block. `points` fills in their coordinates in the unit cube
     // before the domain; it is called where a value is not finite.
     void read(std::uint64_t number, ValueBatch g, const std::function<void(PointBuffer&)>& points,
               NonFiniteCount& non_finite) const;
+    // The same for `count` points of a mixture: values at those that lie inside the cube, and the density there.
+    // `points` fills in all of them.
+    void read_inside(std::uint64_t number, std::uint64_t count, ValueBuffer& g, std::vector<double>& density,
+                     const std::function<void(PointBuffer&)>& points, NonFiniteCount& non_finite) const;
     // |dx/dy| of the sampler's map at these points.
     std::span<const double> jacobian(std::uint64_t number, std::size_t n) const {
         return {block_.jacobian + number, n};
@@ -51,10 +66,15 @@ class DeviceValues {
   private:
     explicit DeviceValues(const Evaluator& g);
     void begin(std::uint64_t count) const;
+    // `each`: points of a replicate.
+    void copy_what_sums_hide(std::uint64_t each);
 
     Evaluator g_;
     DeviceSampler sampler_;
     DeviceSampler::Block block_;
+    double floor_ = 0;
+    std::uint64_t each_ = 0;
+    std::vector<char> copied_; // of each batch
 };
 
 // sum_batches over points that a device draws, if there is one: draw(first, count) has it evaluate a block of them, and

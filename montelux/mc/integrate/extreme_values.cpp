@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "montelux/mc/device/device_job.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/lane_sum.h"
 #include "montelux/mc/math/error.h"
@@ -59,6 +60,15 @@ void ExtremeValues::add(int component, std::span<const double> values) {
     c.greatest = greatest;
     if (component > 0) return;
     for (double v : values) tail_.add(std::abs(v));
+}
+
+void ExtremeValues::add(const DeviceSummary& values, std::uint64_t count) {
+    Component& c = components_.front();
+    c.count += count;
+    c.sum += values.sum;
+    c.squares += values.squares;
+    c.least = std::min(c.least, values.least);
+    c.greatest = std::max(c.greatest, values.greatest);
 }
 
 void ExtremeValues::merge(const ExtremeValues& later) {

@@ -11,6 +11,8 @@
 
 namespace montelux {
 
+struct DeviceSummary;
+
 // The factor by which a standard error is too small if its variance comes from only k independent values,
 // since others like them may not have been drawn: 1 + 1.32 k^-1.5. With it, k hits of a rare event are more
 // than four errors from their expectation with a probability below 0.3 %, as for one hit where 10 are
@@ -33,6 +35,8 @@ class ExtremeValues {
 
     int components() const { return static_cast<int>(components_.size()); }
     void add(int component, std::span<const double> values);
+    // Values of the one component that a device has summarised; none is above the tail's floor.
+    void add(const DeviceSummary& values, std::uint64_t count);
     void merge(const ExtremeValues& later);
     // An empty one, to be filled and merged into this one.
     ExtremeValues empty() const;

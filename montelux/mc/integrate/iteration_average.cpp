@@ -13,7 +13,7 @@ namespace montelux {
 namespace {
 
 constexpr double few_points = 1 / 16.; // points behind the variance, below which they count as few
-constexpr double significance = 1e-3;
+constexpr double chi_squared_significance = 1e-3;
 // Relative to the value: rounding must not make constants disagree with themselves.
 constexpr double rounding_error = 1e-13;
 
@@ -141,7 +141,7 @@ void IterationAverage::tally(Tally& tally) const {
         tally.chi_squared = chi_squared_[c];
     }
     const double p = tally.p_value;
-    if (p * static_cast<double>(m) >= significance) return;
+    if (p * static_cast<double>(m) >= chi_squared_significance) return;
     char text[192];
     std::snprintf(text, sizeof text,
                   "the iterations disagree: chi-squared %.3g for %d degrees of freedom, p = %.2g",

@@ -3,6 +3,8 @@
 #include <array>
 #include <cmath>
 
+#include "montelux/mc/device/device_job.h"
+
 namespace montelux {
 
 void SampleMoments::add(const ValueBuffer& values) {
@@ -31,6 +33,11 @@ void SampleMoments::add(const ValueBuffer& values) {
         for (int c = 0; c < values.components(); ++c) one[static_cast<std::size_t>(c)] = values(i, c);
         moments.add(one);
     }
+}
+
+void SampleMoments::add(const DeviceSummary& values, std::uint64_t count) {
+    if (extremes.components() > 0) extremes.add(values, count);
+    moments.merge(count, values.mean, values.squared_deviations);
 }
 
 void tally_mean(const CovarianceMoments& moments, Tally& tally) {

@@ -54,6 +54,8 @@ struct SampleMoments {
 
     // All values of a batch.
     void add(const ValueBuffer& values);
+    // The same, summarised by a device.
+    void add(const DeviceSummary& values, std::uint64_t count);
     void merge(const SampleMoments& later) {
         moments.merge(later.moments);
         non_finite.merge(later.non_finite);

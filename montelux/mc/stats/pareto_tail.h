@@ -45,6 +45,8 @@ class ParetoTail {
     ParetoTail empty() const;
 
     std::size_t capacity() const { return capacity_; }
+    // Smaller and equal values are ignored.
+    double floor() const { return floor_; }
     // Descending.
     std::vector<double> values() const;
     void restore(std::vector<double> values);

@@ -56,9 +56,12 @@ TEST_F(NvrtcTest, CompilesEveryFormOfTheKernels) {
     for (const int architecture : {70, 80, 90}) {
         if (std::ranges::find(known, architecture) == known.end()) continue;
         for (const FunctionSource& source : sources()) {
-            const std::string image = nvrtc->compile(kernel_text(source, 2), source.file, architecture);
-            EXPECT_EQ(image.substr(1, 3), "ELF") << architecture << "\n" << source.text;
-            EXPECT_NE(image.find("montelux_evaluate"), std::string::npos);
+            for (const KernelPoints points : {KernelPoints::simple, KernelPoints::mixture}) {
+                const std::string image =
+                    nvrtc->compile(kernel_text(source, 2, points), source.file, architecture);
+                EXPECT_EQ(image.substr(1, 3), "ELF") << architecture << "\n" << source.text;
+                EXPECT_NE(image.find("montelux_evaluate"), std::string::npos);
+            }
         }
     }
 }

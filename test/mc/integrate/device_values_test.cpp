@@ -2,15 +2,17 @@
 // tested: points, values, sums and errors have the bits of the processor's.
 #include "test/mc/integrate/estimator_checks.h"
 #include "test/mc/integrate/integrate_testing.h"
+#include "test/mc/integrate/on_emulated_device.h"
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "montelux/mc/device/device_function.h"
 #include "montelux/mc/integrate/adaptive/adaptive.h"
+#include "montelux/mc/integrate/auto.h"
 #include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/integrate_log.h"
@@ -22,22 +24,7 @@
 namespace montelux {
 namespace {
 
-class OnEmulatedDevice : public testing::Test {
-  protected:
-    void SetUp() override {
-        if (std::system("${CXX:-c++} --version >/dev/null 2>&1") != 0) GTEST_SKIP() << "no C++ compiler";
-    }
-    static std::shared_ptr<const DeviceFunction> compiled(const FunctionSource& source, int dimensions) {
-        return std::make_shared<const DeviceFunction>(Device::open("emulated"), source, dimensions);
-    }
-    static Integrand integrand(const std::string& text, int dimensions, int components = 0,
-                               std::vector<double> parameters = {}) {
-        return Integrand::compiled(compiled(
-            {.text = text, .components = components, .parameters = std::move(parameters)}, dimensions));
-    }
-};
-
-const Method all_methods[] = {BasicMonteCarlo{}, Quasi{}, Vegas{}, VegasSobol{}};
+const Method all_methods[] = {BasicMonteCarlo{}, Quasi{}, Vegas{}, VegasSobol{}, Adaptive{}};
 
 const std::string peak_source = "double integrand(int n, const double* x) {\n"
                                 "    double s = 0;\n"
@@ -53,13 +40,6 @@ const std::string two_source = "void integrand(int, const double* x, int, double
                                "    y[0] = x[0] * exp(-x[1]);\n"
                                "    y[1] = x[1] * x[1];\n"
                                "}\n";
-
-// The coordinates of a point as the components of a value.
-std::string coordinates(int n) {
-    std::string text = "void integrand(int n, const double* x, int, double* y) {\n";
-    for (int d = 0; d < n; ++d) text += "y[" + std::to_string(d) + "] = x[" + std::to_string(d) + "];\n";
-    return text + "}\n";
-}
 
 TEST_F(OnEmulatedDevice, RandomPointsHaveTheProcessorsBits) {
     constexpr std::size_t n = 300;
@@ -116,16 +96,45 @@ TEST_F(OnEmulatedDevice, EstimatesHaveTheProcessorsBitsForAHundredSeeds) {
 
 TEST_F(OnEmulatedDevice, ManyBlocksAgreeToRounding) {
     OnDevice small = integrand(peak_source, 2).on_device();
-    small.block = 3000;
+    small.block = 5000;
+    std::size_t largest = 0;
+    small.before.emplace_back([&largest](std::size_t points) { largest = std::max(largest, points); });
     const Integrand there = Integrand::compiled(small.function).with_device(small), here = peak_here;
     for (const Method& method : all_methods) {
         const Budget budget{.evaluations = 100'000};
+        largest = 0;
         const IntegrationResult a = integrate(there, Domain::unit_cube(2), method, budget);
         const IntegrationResult b = integrate(here, Domain::unit_cube(2), method, budget);
         EXPECT_NEAR(a.value[0], b.value[0], 1e-13 * b.value[0]) << method.name();
         EXPECT_NEAR(a.standard_error[0], b.standard_error[0], 1e-9 * b.standard_error[0]) << method.name();
         EXPECT_EQ(a.evaluations, b.evaluations);
+        // Those of replicates bound their steps instead.
+        const bool steps = method.name() == "quasi" || method.name() == "vegas_sobol";
+        EXPECT_TRUE(steps || largest <= small.block) << method.name() << ": " << largest;
+        EXPECT_GT(largest, 0u) << method.name();
     }
+}
+
+TEST_F(OnEmulatedDevice, ABoxOfManyPointsIsDrawnPieceByPiece) {
+    // Without a map and with beta = 1 a sixteenth of all points is in the box of the peak.
+    OnDevice small = integrand("double integrand(int, const double* x) {\n"
+                               "    return x[0] < 0.01 && x[1] < 0.01 ? 1 + x[0] : 0.001 * x[1];\n"
+                               "}\n",
+                               2)
+                         .on_device();
+    small.block = 2000; // a task has 16384 points at least
+    std::size_t largest = 0;
+    small.before.emplace_back([&largest](std::size_t points) { largest = std::max(largest, points); });
+    const Integrand there = Integrand::compiled(small.function).with_device(small);
+    const Integrand here = [](std::span<const double> x) {
+        return x[0] < 0.01 && x[1] < 0.01 ? 1 + x[0] : 0.001 * x[1];
+    };
+    const Vegas method{.alpha = 0, .beta = 1};
+    const IntegrationResult a = integrate(there, Domain::unit_cube(2), method, {.evaluations = 400'000});
+    const IntegrationResult b = integrate(here, Domain::unit_cube(2), method, {.evaluations = 400'000});
+    EXPECT_NEAR(a.value[0], b.value[0], 1e-13 * b.value[0]);
+    EXPECT_NEAR(a.standard_error[0], b.standard_error[0], 1e-9 * b.standard_error[0]);
+    EXPECT_LE(largest, small.block);
 }
 
 TEST_F(OnEmulatedDevice, BlocksOfManyComponentsAreBoundedInBytes) {
@@ -242,8 +251,9 @@ TEST_F(OnEmulatedDevice, WhatADeviceCannotDoIsSaid) {
     const Integrand f = integrand(peak_source, 2);
     const Budget budget{.evaluations = 1000};
     expect_error(
-        "the method 'adaptive' does not run on a device; expected vegas, vegas_sobol, quasi or basic",
-        [&] { integrate(f, Domain::unit_cube(2), Adaptive{}, budget); });
+        "the method 'auto' does not run on a device; expected adaptive, vegas, vegas_sobol, quasi or basic",
+        [&] { integrate(f, Domain::unit_cube(2), Auto{}, budget); });
+    expect_error("points of a simplex", [&] { integrate(f, Domain::simplex(2), Adaptive{}, budget); });
     expect_error("points of a ball in 2 dimensions are not drawn on a device", [&] {
         integrate(f, Domain::ball({0, 0}), BasicMonteCarlo{}, budget);
     });

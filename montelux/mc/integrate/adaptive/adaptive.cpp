@@ -53,7 +53,7 @@ bool targeted(const StepRequest& request) { return request.relative_error > 0 ||
 class AdaptiveEstimator final : public Estimator {
   public:
     AdaptiveEstimator(const Problem& problem, const Adaptive& settings)
-        : problem_(problem), settings_(settings),
+        : problem_(problem), settings_(settings), device_(DeviceValues::of(problem.evaluator)),
           explored_(std::max<std::uint64_t>(
               problem.evaluator.dimensions() == 1 ? 128 : 256,
               std::bit_ceil(4 * static_cast<std::uint64_t>(problem.evaluator.dimensions())))),
@@ -61,7 +61,10 @@ class AdaptiveEstimator final : public Estimator {
                                             std::lround(settings.uniform_share * MixtureDensity::units)))),
           cube_(problem.evaluator.dimensions()),
           round_points_(std::max<std::uint64_t>(1, explored_ / 256) * training_points),
-          uniform_(settings.replicates, problem.evaluator.components()), weighted_(uniform_) {}
+          uniform_(settings.replicates, problem.evaluator.components()), weighted_(uniform_) {
+        // Now, not within a step whose time is measured.
+        if (device_) device_->sampler().prepare_mixtures();
+    }
 
     StepOutcome step(const StepRequest& request) override {
         switch (phase_) {
@@ -274,7 +277,7 @@ class AdaptiveEstimator final : public Estimator {
         SamplePoints drawn;
         auto added =
             sample_mixture(problem_.evaluator, density, hash_key(problem_.seed, stream), settings_.replicates,
-                           points, end, keep ? &drawn : nullptr, request.cancel);
+                           points, end, keep ? &drawn : nullptr, request.cancel, device_.get());
         if (!added) return StepOutcome::cancelled;
         estimate.grow(*added, end);
         if (phase_ == Phase::weighted)
@@ -357,7 +360,8 @@ class AdaptiveEstimator final : public Estimator {
 
     Problem problem_;
     Adaptive settings_;
-    std::uint64_t explored_; // points of each replicate that the exploration takes
+    std::unique_ptr<DeviceValues> device_; // null: the processor
+    std::uint64_t explored_;               // points of each replicate that the exploration takes
     DensityTrainer trainer_;
     MixtureDensity cube_; // uniform
     Phase phase_ = Phase::explore;

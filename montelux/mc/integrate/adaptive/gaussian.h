@@ -18,6 +18,7 @@ class Gaussian {
     int dimensions() const { return static_cast<int>(mean_.size()); }
     std::span<const double> mean() const { return mean_; }
     std::span<const double> cholesky() const { return cholesky_; }
+    std::span<const double> inverse() const { return inverse_; } // of L
     // x = mu + L z with z the normal quantiles of u; may lie outside the unit cube.
     void sample(const PointBatch& u, PointBuffer& x) const;
     // log p(x) at each point.

@@ -33,6 +33,24 @@ std::uint64_t MixtureDensity::balanced_points() const {
     return static_cast<std::uint64_t>(units / common);
 }
 
+void MixtureDensity::draw(int channel, const PointBatch& u, PointBuffer& x, std::span<double> density) const {
+    x.resize(u.count(), dimensions_);
+    if (channel >= first_gaussian()) return gaussian(channel).sample(u, x);
+    for (int d = 0; d < dimensions_; ++d) {
+        if (channel == 0)
+            std::copy_n(u.coordinate(d).data(), u.count(), x.coordinate(d).data());
+        else if (channel < map_channel())
+            sample_boundary(u.coordinate(d), x.coordinate(d), density);
+        else
+            maps_[static_cast<std::size_t>(d)].sample(u.coordinate(d), x.coordinate(d), density);
+    }
+}
+
+void MixtureDensity::place(int channel, const PointBatch& u, PointBuffer& x) const {
+    std::vector<double> ignored(u.count(), 1.0);
+    draw(channel, u, x, ignored);
+}
+
 void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x, std::vector<double>& density,
                             std::vector<std::size_t>* inside) const {
     const std::size_t count = u.count();
@@ -41,24 +59,16 @@ void MixtureDensity::sample(int channel, const PointBatch& u, PointBuffer& x, st
             inside->resize(count);
             std::iota(inside->begin(), inside->end(), std::size_t{0});
         }
-        x.resize(count, dimensions_);
         density.assign(count, 1.0);
-        for (int d = 0; d < dimensions_; ++d) {
-            if (channel == 0)
-                std::copy_n(u.coordinate(d).data(), count, x.coordinate(d).data());
-            else if (channel < map_channel())
-                sample_boundary(u.coordinate(d), x.coordinate(d), density);
-            else
-                maps_[static_cast<std::size_t>(d)].sample(u.coordinate(d), x.coordinate(d), density);
-        }
+        draw(channel, u, x, density);
         if (channels() == 1) return;
         const double own = share(channel);
         for (double& p : density) p *= own;
         add_pdf(x, density, channel);
         return;
     }
-    PointBuffer all(count, dimensions_);
-    gaussian(channel).sample(u, all);
+    PointBuffer all;
+    draw(channel, u, all, {});
     std::vector<std::size_t> own;
     std::vector<std::size_t>& in_cube = inside != nullptr ? *inside : own;
     in_cube.clear();

@@ -34,9 +34,17 @@ class MixtureDensity {
     int dimensions() const { return dimensions_; }
     int channels() const { return static_cast<int>(shares_.size()); }
     std::span<const int> shares() const { return shares_; }
+    // The same as numbers that sum to 1.
+    double share(int channel) const {
+        return static_cast<double>(shares_[static_cast<std::size_t>(channel)]) / units;
+    }
     // One per channel, summing to `units`.
     void set_shares(std::vector<int> shares) { shares_ = std::move(shares); }
     bool has_boundary() const { return boundary_; }
+    // The channels after the uniform one: the boundary's is before map_channel(), that of the maps before
+    // first_gaussian().
+    int map_channel() const { return boundary_ ? 2 : 1; }
+    int first_gaussian() const { return map_channel() + (maps_.empty() ? 0 : 1); }
     std::span<const MonotoneMap> maps() const { return maps_; }
     std::span<const Gaussian> gaussians() const { return gaussians_; }
 
@@ -46,8 +54,10 @@ class MixtureDensity {
     std::uint64_t channel_points(int channel, std::uint64_t n) const {
         return n * static_cast<std::uint64_t>(shares_[static_cast<std::size_t>(channel)]) / units;
     }
-    // The points of a channel for uniform numbers u, those inside the cube one after the other, and q at
-    // each; `inside`, if given, gets their indices in u.
+    // The points of a channel for uniform numbers u, outside the cube too.
+    void place(int channel, const PointBatch& u, PointBuffer& x) const;
+    // The same, those inside the cube one after the other, and q at each; `inside`, if given, gets their
+    // indices in u.
     void sample(int channel, const PointBatch& u, PointBuffer& x, std::vector<double>& density,
                 std::vector<std::size_t>* inside = nullptr) const;
     // q_k at each point, and q.
@@ -69,16 +79,13 @@ class MixtureDensity {
     static MixtureDensity load(StateReader& state, int dimensions);
 
   private:
+    // x as place() has it; multiplies by the density of a channel that is no Gaussian.
+    void draw(int channel, const PointBatch& u, PointBuffer& x, std::span<double> density) const;
     // Adds the shares of all channels but `except`.
     void add_pdf(const PointBatch& x, std::span<double> density, int except) const;
-    double share(int channel) const {
-        return static_cast<double>(shares_[static_cast<std::size_t>(channel)]) / units;
-    }
     const Gaussian& gaussian(int channel) const {
         return gaussians_[static_cast<std::size_t>(channel - first_gaussian())];
     }
-    int map_channel() const { return boundary_ ? 2 : 1; }
-    int first_gaussian() const { return map_channel() + (maps_.empty() ? 0 : 1); }
 
     int dimensions_;
     bool boundary_ = false;

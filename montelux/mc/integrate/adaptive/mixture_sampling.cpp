@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "montelux/mc/integrate/adaptive/device_mixture.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
@@ -14,6 +16,7 @@ namespace {
 struct Chunk {
     int replicate, channel;
     std::uint64_t first, count;
+    std::uint64_t number; // of its first point among those of all replicates in turn
 };
 
 // The points of one chunk, kept until all are put in order.
@@ -81,40 +84,61 @@ void MixtureSums::load(StateReader& state) {
 
 std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const MixtureDensity& mixture,
                                           std::uint64_t key, int replicates, std::uint64_t begin,
-                                          std::uint64_t end, SamplePoints* points, const CancelFlag* cancel) {
+                                          std::uint64_t end, SamplePoints* points, const CancelFlag* cancel,
+                                          DeviceValues* device) {
     constexpr std::uint64_t longest = 4096;
+    if (points) device = nullptr;
     std::vector<Chunk> chunks;
+    std::uint64_t number = 0;
     for (int r = 0; r < replicates; ++r)
         for (int k = 0; k < mixture.channels(); ++k) {
             const std::uint64_t last = mixture.channel_points(k, end);
-            for (std::uint64_t i = mixture.channel_points(k, begin); i < last; i += longest)
-                chunks.push_back({r, k, i, std::min(longest, last - i)});
+            for (std::uint64_t i = mixture.channel_points(k, begin); i < last; i += longest) {
+                chunks.push_back({r, k, i, std::min(longest, last - i), number});
+                number += chunks.back().count;
+            }
         }
     const int components = evaluator.components();
     std::vector<Kept> kept(points ? chunks.size() : 0);
-    auto run = [&](std::int64_t c) {
-        const Chunk& chunk = chunks[static_cast<std::size_t>(c)];
+    // `block`: the number of the first point of those that the device has drawn.
+    auto run = [&](std::size_t c, std::uint64_t block) {
+        const Chunk& chunk = chunks[c];
         MixtureSums total;
         total.sums = ReplicateSums(replicates, components);
         total.extremes = ExtremeValues(components);
         total.channels.resize(static_cast<std::size_t>(mixture.channels()));
         MixtureSums::Channel& channel = total.channels[static_cast<std::size_t>(chunk.channel)];
         channel.count = chunk.count;
-        const ScrambledSobol sobol(mixture.dimensions(), hash_key(key, chunk.channel),
-                                   static_cast<std::uint32_t>(chunk.replicate));
+        std::optional<ScrambledSobol> sobol;
+        const auto fill = [&](PointBuffer& to, std::uint64_t i) {
+            if (!sobol)
+                sobol.emplace(mixture.dimensions(), hash_key(key, chunk.channel),
+                              static_cast<std::uint32_t>(chunk.replicate));
+            sobol->fill(to, chunk.first + i);
+        };
         // Points that are kept stay in one piece.
         const std::uint64_t batch = points ? longest : batch_size;
         PointBuffer u, x;
         ValueBuffer g;
         std::vector<double> density, weights;
         for (std::uint64_t i = 0; i < chunk.count; i += batch) {
-            u.resize(std::min(batch, chunk.count - i), mixture.dimensions());
-            sobol.fill(u, chunk.first + i);
-            mixture.sample(chunk.channel, u, x, density);
-            if (x.count() == 0) continue;
-            g.resize(x.count(), components);
-            evaluator(x, g, total.non_finite);
-            total.evaluations += x.count();
+            const std::uint64_t n = std::min(batch, chunk.count - i);
+            if (device) {
+                const auto all = [&](PointBuffer& to) {
+                    u.resize(n, mixture.dimensions());
+                    fill(u, i);
+                    mixture.place(chunk.channel, u, to);
+                };
+                device->read_inside(chunk.number - block + i, n, g, density, all, total.non_finite);
+            } else {
+                u.resize(n, mixture.dimensions());
+                fill(u, i);
+                mixture.sample(chunk.channel, u, x, density);
+                g.resize(x.count(), components);
+                if (x.count() > 0) evaluator(x, g, total.non_finite);
+            }
+            if (density.empty()) continue;
+            total.evaluations += density.size();
             const bool weighted = mixture.channels() > 1;
             for (int m = 0; m < components; ++m) {
                 double sum = 0, squares = 0;
@@ -131,7 +155,7 @@ std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const Mixt
                 channel.sum += sum;
                 channel.squares += squares;
             }
-            if (points) kept[static_cast<std::size_t>(c)] = {x, g, density};
+            if (points) kept[c] = {x, g, density};
         }
         return total;
     };
@@ -139,7 +163,32 @@ std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const Mixt
         a.merge(b);
         return a;
     };
-    auto sums = parallel_reduce_ordered(static_cast<std::int64_t>(chunks.size()), run, combine, cancel);
+    const auto sum_of = [&](std::size_t first, std::size_t last, std::uint64_t block) {
+        return parallel_reduce_ordered(
+            static_cast<std::int64_t>(last - first),
+            [&](std::int64_t c) { return run(first + static_cast<std::size_t>(c), block); }, combine, cancel);
+    };
+    if (device) {
+        set_mixture(device->sampler(), mixture, key, replicates, begin, end);
+        std::optional<MixtureSums> all;
+        for (std::size_t first = 0; first < chunks.size();) {
+            const std::uint64_t block = chunks[first].number;
+            std::uint64_t count = chunks[first].count;
+            std::size_t last = first + 1;
+            for (; last < chunks.size() && count + chunks[last].count <= device->block_size(); ++last)
+                count += chunks[last].count;
+            device->draw_mixture(block, count);
+            auto sums = sum_of(first, last, block);
+            if (!sums) return sums;
+            if (all)
+                all->merge(*sums);
+            else
+                all = std::move(sums);
+            first = last;
+        }
+        return all;
+    }
+    auto sums = sum_of(0, chunks.size(), 0);
     if (!sums || !points) return sums;
 
     std::size_t count = 0;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/adaptive/mixture_density.h"
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/estimator.h"
 #include "montelux/mc/integrate/replicates.h"
 
@@ -43,9 +44,11 @@ struct MixtureSums {
 
 // Evaluates, for each replicate r in [0, replicates), points [begin, end) of the mixture (multiples of
 // its balanced_points()), which are scrambled Sobol' points of their own for each (key, channel, replicate).
-// If `points` is given it receives all points in order. Empty when cancelled.
+// If `points` is given it receives all points in order; otherwise `device` draws and evaluates them, if there is one.
+// Empty when cancelled.
 std::optional<MixtureSums> sample_mixture(const Evaluator& evaluator, const MixtureDensity& mixture,
                                           std::uint64_t key, int replicates, std::uint64_t begin,
-                                          std::uint64_t end, SamplePoints* points, const CancelFlag* cancel);
+                                          std::uint64_t end, SamplePoints* points, const CancelFlag* cancel,
+                                          DeviceValues* device = nullptr);
 
 } // namespace montelux

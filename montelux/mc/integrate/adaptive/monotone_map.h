@@ -22,6 +22,12 @@ class MonotoneMap {
     // has a singularity at 0.
     MonotoneMap(std::vector<double> edges, std::vector<double> masses, double power = 1);
 
+    // One bin: u in [u0, u0 + du] to x in [x0, x0 + dx], slopes dx/du at its ends.
+    struct Bin {
+        double u0, du, x0, dx, slope0, slope1;
+    };
+    std::span<const Bin> table() const { return bins_; }
+    double power() const { return power_; }
     int bins() const { return static_cast<int>(masses_.size()); }
     // x = quantile(u) at each u, and density[i] *= p(x).
     void sample(std::span<const double> u, std::span<double> x, std::span<double> density) const;
@@ -34,10 +40,6 @@ class MonotoneMap {
     static MonotoneMap load(StateReader& state);
 
   private:
-    // One bin: u in [u0, u0 + du] to x in [x0, x0 + dx], slopes dx/du at its ends.
-    struct Bin {
-        double u0, du, x0, dx, slope0, slope1;
-    };
     double quantile(double u, double& density) const;
     const Bin& bin_of(const std::vector<double>& starts, double at) const;
 

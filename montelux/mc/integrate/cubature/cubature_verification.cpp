@@ -17,7 +17,7 @@ namespace {
 constexpr double negligible_surprise = 0.02; // share of the tolerance
 constexpr double least_tolerance = 1e-7;     // share of the integral of the absolute value
 constexpr double suspicion = 2.5;            // standard errors beyond which the difference counts as an error
-constexpr double significance = 5;           // standard errors between rules and points
+constexpr double significant_errors = 5;     // standard errors between rules and points
 constexpr std::uint64_t most_rounds = 12;
 constexpr std::uint64_t fewest_points = 16;
 constexpr double plateau = 0.1;             // range of the values beside their mean
@@ -232,7 +232,7 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     disagrees_ = false;
     for (std::size_t c = 0; c < value.size(); ++c) {
         const double difference = check->difference[c], noise = check->standard_error[c];
-        if (std::abs(difference) <= error[c] + significance * noise) continue;
+        if (std::abs(difference) <= error[c] + significant_errors * noise) continue;
         disagrees_ = true;
         if (rounds_ < most_rounds) add_differences(regions, *check, c);
     }

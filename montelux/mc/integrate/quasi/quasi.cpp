@@ -1,5 +1,6 @@
 #include "montelux/mc/integrate/quasi/quasi.h"
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 
@@ -201,6 +202,8 @@ class QuasiEstimator final : public Estimator {
                               problem_.seed, static_cast<std::uint32_t>(r));
         if (device_) {
             device_->set_replicates(problem_.seed, 0, sums.replicates());
+            device_->summarise_above(
+                std::max(running_extremes_.tail().floor(), completed_extremes_.tail().floor()));
             device_->draw_sobol(begin, size);
         }
         const bool whole = parallel_for(
@@ -216,11 +219,17 @@ class QuasiEstimator final : public Estimator {
                 ValueBuffer values;
                 for (std::uint64_t first = from; first < to; first += batch_size) {
                     const std::uint64_t count = std::min(batch_size, to - first);
+                    const std::uint64_t number = static_cast<std::uint64_t>(task) / parts * size + first;
+                    if (const DeviceSummary* s = device_ ? device_->summary(number) : nullptr) {
+                        slot.sums[0] += s->sum;
+                        slot.extremes.add(*s, count);
+                        continue;
+                    }
                     values.resize(count, m);
                     if (device_) {
                         device_->read(
-                            static_cast<std::uint64_t>(task) / parts * size + first, values,
-                            [&](PointBuffer& at) { replicate.fill(at, begin + first); }, slot.non_finite);
+                            number, values, [&](PointBuffer& at) { replicate.fill(at, begin + first); },
+                            slot.non_finite);
                     } else {
                         u.resize(count, problem_.evaluator.dimensions());
                         replicate.fill(u, begin + first);

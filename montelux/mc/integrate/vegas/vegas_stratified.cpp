@@ -99,10 +99,15 @@ struct IterationSum {
     }
 };
 
-// Boxes that one task takes, with the number of its first point.
+// Boxes that one task takes, and the numbers of its points.
 struct Task {
     std::size_t begin, end;
-    std::uint64_t first_point;
+    std::uint64_t first_point, end_point;
+};
+
+// Points that a device has drawn.
+struct DrawnPoints {
+    std::uint64_t begin, end;
 };
 
 class StratifiedVegas final : public VegasEstimator {
@@ -185,22 +190,21 @@ class StratifiedVegas final : public VegasEstimator {
         std::uint64_t point = 0;
         for (std::size_t h = 0; h < counts.size(); ++h) {
             if (tasks.empty() || point - tasks.back().first_point >= vegas_task_points)
-                tasks.push_back({h, h, point});
+                tasks.push_back({h, h, point, point});
             tasks.back().end = h + 1;
-            point += counts[h];
+            tasks.back().end_point = point += counts[h];
         }
-        if (!device_) return sample(next, cubes, counts, tasks, 0, point, variances, cancel);
+        if (!device_) return sample(next, cubes, counts, tasks, {}, point, variances, cancel);
         upload(next.map, cubes, counts);
         std::optional<IterationSum> all;
         for (std::size_t begin = 0; begin < tasks.size();) {
-            const auto end_of = [&](std::size_t t) {
-                return t + 1 < tasks.size() ? tasks[t + 1].first_point : point;
-            };
-            const std::uint64_t first = tasks[begin].first_point;
+            const std::uint64_t first = tasks[begin].first_point, size = device_->block_size();
             std::size_t end = begin + 1;
-            while (end < tasks.size() && end_of(end) - first <= device_->block_size()) ++end;
-            device_->draw_random(problem_.seed, next.stream, first, end_of(end - 1) - first, true);
-            auto sum = sample(next, cubes, counts, std::span(tasks).subspan(begin, end - begin), first, point,
+            while (end < tasks.size() && tasks[end].end_point - first <= size) ++end;
+            DrawnPoints drawn{first, first};
+            // A box may have more points than fit into a block: its task draws them piece by piece.
+            if (tasks[end - 1].end_point - first <= size) draw(next, drawn, first, tasks[end - 1].end_point);
+            auto sum = sample(next, cubes, counts, std::span(tasks).subspan(begin, end - begin), drawn, point,
                               variances, cancel);
             if (!sum) return std::nullopt;
             if (all)
@@ -220,15 +224,21 @@ class StratifiedVegas final : public VegasEstimator {
         device_->sampler().set_boxes(begin, cubes.strata());
     }
 
-    // A run of tasks. `block`: the number of the first point that a device drew for them.
+    // Points [first, end), or as many of them as fit into a block.
+    void draw(const VegasState& next, DrawnPoints& drawn, std::uint64_t first, std::uint64_t end) const {
+        drawn = {first, std::min(end, first + device_->block_size())};
+        device_->draw_random(problem_.seed, next.stream, first, drawn.end - first, true);
+    }
+
+    // A run of tasks, and the points that a device drew for them.
     std::optional<IterationSum> sample(const VegasState& next, const Hypercubes& cubes,
                                        const std::vector<std::uint32_t>& counts, std::span<const Task> tasks,
-                                       std::uint64_t block, std::uint64_t all_points,
+                                       const DrawnPoints& drawn, std::uint64_t all_points,
                                        std::vector<double>& variances, const CancelFlag* cancel) const {
         return parallel_reduce_ordered(
             static_cast<std::int64_t>(tasks.size()),
             [&](std::int64_t t) {
-                return run(next, cubes, counts, tasks[static_cast<std::size_t>(t)], block, all_points,
+                return run(next, cubes, counts, tasks[static_cast<std::size_t>(t)], drawn, all_points,
                            variances);
             },
             [](IterationSum a, const IterationSum& b) {
@@ -239,7 +249,7 @@ class StratifiedVegas final : public VegasEstimator {
     }
 
     IterationSum run(const VegasState& next, const Hypercubes& cubes,
-                     const std::vector<std::uint32_t>& counts, const Task& task, std::uint64_t block,
+                     const std::vector<std::uint32_t>& counts, const Task& task, DrawnPoints drawn,
                      std::uint64_t all_points, std::vector<double>& variances) const {
         const Evaluator& g = problem_.evaluator;
         const int m = g.components(), dimensions = g.dimensions();
@@ -272,10 +282,11 @@ class StratifiedVegas final : public VegasEstimator {
                 fill_random(to, problem_.seed, next.stream, first);
                 cubes.place(to, {box.data(), n});
             };
+            if (device_ && first + n > drawn.end) draw(next, drawn, first, task.end_point);
             y.resize(n, dimensions);
             if (!device_ || training) fill(y);
             if (device_)
-                points.evaluate(g, next.map, *device_, first - block, n, fill, next.inverse_scale,
+                points.evaluate(g, next.map, *device_, first - drawn.begin, n, fill, next.inverse_scale,
                                 sum.insight.non_finite);
             else
                 points.evaluate(g, next.map, y, next.inverse_scale, sum.insight.non_finite);

@@ -1,11 +1,13 @@
 // A driver and a compiler of CUDA for tests, on the processor: the device's memory is the processor's, the "machine code"
 // is the source, and loading it has the system's compiler translate it. MONTELUX_FAKE_CUDA=CALL:RESULT lets a call fail.
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <dlfcn.h>
 #include <fstream>
 #include <string>
 #include <unistd.h>
+#include <vector>
 
 namespace {
 
@@ -18,13 +20,24 @@ int result_of(const char* call) {
     return text.substr(0, colon) == call ? std::atoi(text.c_str() + colon + 1) : 0;
 }
 
-int context = 0; // its address is the context
-thread_local void* current = nullptr;
+int context = 0;                          // its address is the context
+thread_local std::vector<void*> contexts; // the last one is current
 constexpr int no_context = 201;
 
-int in_context(const char* call) { return current == &context ? result_of(call) : no_context; }
+void* current() { return contexts.empty() ? nullptr : contexts.back(); }
+int in_context(const char* call) { return current() == &context ? result_of(call) : no_context; }
 
 std::string program_text, program_log;
+
+// CUDA's normcdfinv: the root of the distribution function, by bisection.
+double normal_quantile(double p) {
+    double low = -40, high = 40;
+    for (int i = 0; i < 100; ++i) {
+        const double middle = (low + high) / 2;
+        (std::erfc(-middle / std::sqrt(2.0)) / 2 < p ? low : high) = middle;
+    }
+    return low;
+}
 
 } // namespace
 
@@ -52,8 +65,19 @@ EXPORT int cuDevicePrimaryCtxRetain(void** made, int) {
     return result_of("cuDevicePrimaryCtxRetain");
 }
 EXPORT int cuDevicePrimaryCtxRelease_v2(int) { return 0; }
-EXPORT int cuCtxSetCurrent(void* made) {
-    current = made;
+EXPORT int cuCtxPushCurrent_v2(void* made) {
+    if (const int result = result_of("cuCtxPushCurrent")) return result;
+    contexts.push_back(made);
+    return 0;
+}
+EXPORT int cuCtxPopCurrent_v2(void** left) {
+    if (contexts.empty()) return no_context;
+    *left = contexts.back();
+    contexts.pop_back();
+    return 0;
+}
+EXPORT int cuCtxGetCurrent(void** made) {
+    *made = current();
     return 0;
 }
 EXPORT int cuCtxSynchronize() { return in_context("cuCtxSynchronize"); }
@@ -73,8 +97,10 @@ EXPORT int cuModuleLoadData(void** module, const void* image) {
 }
 EXPORT int cuModuleUnload(void* module) { return ::dlclose(module); }
 EXPORT int cuModuleGetFunction(void** function, void* module, const char* name) {
-    if (std::strcmp(name, "montelux_evaluate") != 0) return 500;
-    *function = ::dlsym(module, "montelux_run_grid");
+    const std::string kernel = name;
+    *function = kernel == "montelux_evaluate"    ? ::dlsym(module, "montelux_run_grid")
+                : kernel == "montelux_summarise" ? ::dlsym(module, "montelux_run_summaries")
+                                                 : nullptr;
     return *function != nullptr ? in_context("cuModuleGetFunction") : 500;
 }
 EXPORT int cuLaunchKernel(void* function, unsigned int grid_x, unsigned int grid_y, unsigned int grid_z,
@@ -84,8 +110,8 @@ EXPORT int cuLaunchKernel(void* function, unsigned int grid_x, unsigned int grid
     if (grid_y != 1 || grid_z != 1 || block_y != 1 || block_z != 1 || shared != 0 || stream != nullptr ||
         extra != nullptr || grid_x == 0 || block_x == 0 || block_x > 1024)
         return 1;
-    reinterpret_cast<void (*)(const void*, unsigned int, unsigned int)>(function)(parameters[0], grid_x,
-                                                                                  block_x);
+    using RunGrid = void (*)(const void*, unsigned int, unsigned int, double (*)(double));
+    reinterpret_cast<RunGrid>(function)(parameters[0], grid_x, block_x, normal_quantile);
     return 0;
 }
 EXPORT int cuMemAlloc_v2(unsigned long long* memory, std::size_t bytes) {
