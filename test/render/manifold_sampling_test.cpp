@@ -51,7 +51,7 @@ TEST(ManifoldSampling, PlaneMirrorsShowTheImageOfALight) {
     const Agreement r = agreement_of(render_of_seeds(a, IntegratorKind::path, 64),
                                      render_of_seeds(doubled.description, IntegratorKind::path, 64));
     EXPECT_LT(r.sigmas, 7) << 100 * r.bias << " %";
-    EXPECT_LT(r.error, 0.005);
+    EXPECT_LT(r.error, 0.01);
 }
 
 // A light straight above water, seen from the floor: it seems as far as the height and the depth over the index, and
@@ -109,8 +109,9 @@ void expect_sampling_agrees(const std::vector<Case>& cases, IntegratorKind refer
         plain.sampler.seed = 3000 + 1000 * i;
         SceneDescription d = sampled(cases[i].scene);
         d.sampler.seed = 90'000 + 1000 * i;
-        const Agreement r = agreement_of(render_of_seeds(plain, reference, cases[i].samples),
-                                         render_of_seeds(d, IntegratorKind::path, cases[i].samples));
+        const std::uint32_t more = std::getenv("MANIFOLD_MORE") ? std::atoi(std::getenv("MANIFOLD_MORE")) : 1;
+        const Agreement r = agreement_of(render_of_seeds(plain, reference, more * cases[i].samples),
+                                         render_of_seeds(d, IntegratorKind::path, more * cases[i].samples));
         EXPECT_LT(r.sigmas, 7) << cases[i].name << ": " << 100 * r.bias << " %";
         EXPECT_LT(r.error, most_error) << cases[i].name;
         squares += r.squares;
@@ -198,8 +199,8 @@ TEST(ManifoldSampling, AgreesWithPathTracing) {
     expect_sampling_agrees(lamps(), IntegratorKind::path, 0.03, 1.1);
 }
 
-// Lights that path tracing cannot find across a caster. As long as the depth allows one specular vertex only, light
-// tracing and manifold sampling find the same paths.
+// Lights that path tracing cannot find across a caster. As long as the depth allows one specular vertex only, paths
+// from the lights and manifold sampling find the same light.
 std::vector<Case> points() {
     std::vector<Case> cases;
     const auto add = [&](const std::string& name, SceneBuilder b, const auto& change) {
@@ -259,8 +260,8 @@ std::vector<Case> points() {
     return cases;
 }
 
-TEST(ManifoldSampling, AgreesWithLightTracing) {
-    expect_sampling_agrees(points(), IntegratorKind::light_tracing, 0.03, 1.1);
+TEST(ManifoldSampling, AgreesWithBidirectional) {
+    expect_sampling_agrees(points(), IntegratorKind::bidirectional, 0.03, 1.1);
 }
 
 SceneBuilder small_scene() {

@@ -10,7 +10,8 @@ namespace montelux {
 
 namespace {
 
-constexpr int most_steps = 30;
+constexpr int most_steps = 20;
+constexpr double smallest_share = 1.0 / 32; // of a step that leads off the caster
 // Of the constraint, in units of the generalised half vector's summands.
 constexpr double tolerance = 1e-9;
 // Distance of equal solutions over that of the vertex.
@@ -24,13 +25,15 @@ struct Matrix2 {
 bool is_finite(Vec3d v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 // The constraint at a point: the part of the generalised half vector across the normal, wi + eta wo, vanishes where
-// the laws of reflection and refraction hold (Walter et al. 2007). Its derivatives by the coordinates are those in a
-// plane that does not turn with the normal: at a solution they are the same.
+// the laws of reflection and refraction hold (Walter et al. 2007). Of reflection it is divided by the part along the
+// normal: above a plane it is then nearly linear, and walks from far away end. Its derivatives by the coordinates are
+// those in a plane that does not turn with the normal: at a solution they are the same.
 struct Constraint {
     FrameOf<double> frame;
     Vec3d wi, wo;     // to the vertex, to the light
     double ri, ro;    // inverse distances
     double eta = 1;   // on the side of the light over that of the vertex
+    double scale = 1; // the divisor
     double x, y;      // in the frame
     Matrix2 gradient; // row: x or y
 };
@@ -52,12 +55,16 @@ Constraint constraint_at(const CasterPoint& point, const ManifoldEnds& ends, con
     if (!reflects) c.eta = dot(c.wi, point.n) > 0 ? caster.eta : 1 / caster.eta;
     c.frame = FrameOf<double>::from_normal(point.n);
     const Vec3d h = c.wi + c.wo * c.eta;
-    c.x = dot(c.frame.s, h);
-    c.y = dot(c.frame.t, h);
     const double along = dot(point.n, h);
+    if (reflects) c.scale = along;
+    const Vec3d across = h - point.n * along;
+    c.x = dot(c.frame.s, h) / c.scale;
+    c.y = dot(c.frame.t, h) / c.scale;
     const auto derivative = [&](Vec3d dp, Vec3d dn) {
         const Vec3d dh = (c.wi * dot(c.wi, dp) - dp) * c.ri + (c.wo * dot(c.wo, dp) - dp) * (c.ro * c.eta);
-        return dh - dn * along;
+        Vec3d d = dh - dn * along;
+        if (reflects) d = d - across * ((dot(point.n, dh) + dot(dn, h)) / along);
+        return d / c.scale;
     };
     const Vec3d du = derivative(point.dpdu, point.dndu), dv = derivative(point.dpdv, point.dndv);
     c.gradient = {dot(c.frame.s, du), dot(c.frame.s, dv), dot(c.frame.t, du), dot(c.frame.t, dv)};
@@ -110,6 +117,7 @@ std::optional<ManifoldSolution> walk_manifold(const SceneView& scene, RayTracer&
             share = std::min(1.0, 2 * share);
         } else {
             share /= 2;
+            if (share < smallest_share) return std::nullopt;
         }
     }
     return std::nullopt;
@@ -134,8 +142,8 @@ double manifold_geometry(const ManifoldSolution& solution, const ManifoldEnds& e
     const CasterPoint& point = solution.point;
     const Constraint c = constraint_at(point, ends, caster, solution.reflects);
     // By the implicit function theorem a step of the light across its ray, which changes the constraint by
-    // eta / distance, moves the vertex by the inverse gradient.
-    const double per_light = c.eta * (ends.distant ? 1 : c.ro);
+    // eta / (distance * scale), moves the vertex by the inverse gradient.
+    const double per_light = c.eta * (ends.distant ? 1 : c.ro) / c.scale;
     const double by_light = per_light * per_light * std::abs(dot(point.n, c.wo));
     const Vec3d normal = normalize(cross(point.dpdu, point.dpdv));
     const double by_vertex = std::abs(dot(normal, c.wi)) * c.ri * c.ri * point.area_element();
