@@ -30,7 +30,8 @@ SceneDescription sampled(const SceneBuilder& b) {
     return d;
 }
 
-// A mirror that a spot points at, and the spot's image without the mirror: the same picture.
+// A mirror that a spot points at past the edge of a black wall, and the image of spot and wall without the mirror: the
+// same picture. A second mirror that reflects nothing is chosen half of the time.
 TEST(ManifoldSampling, PlaneMirrorsShowTheImageOfALight) {
     SceneBuilder mirrored, image;
     for (SceneBuilder* b : {&mirrored, &image}) {
@@ -46,10 +47,15 @@ TEST(ManifoldSampling, PlaneMirrorsShowTheImageOfALight) {
         b->look({0, -2, 3}, {0, 0, 0}, 25);
         b->description.integrator.max_depth = 2;
     }
-    // The plane x = 2.
-    mirrored.add_mesh(square(Transform::translate({2, 0, 0}) * Transform::rotate(90, {0, 1, 0}) *
-                             Transform::scale({9, 9, 1})),
-                      mirrored.add(perfect_mirror()));
+    const auto across_x = [](Vec3d at, double size) {
+        return square(Transform::translate(at) * Transform::rotate(90, {0, 1, 0}) *
+                      Transform::scale({size, size, 1}));
+    };
+    for (const double x : {2.0, -20.0})
+        mirrored.add_mesh(across_x({x, 0, 0}, 9), mirrored.add(perfect_mirror()));
+    mirrored.add_mesh(across_x({1.2, 1.2, 1.65}, 1), mirrored.add(DiffuseMaterial{gray(0)}));
+    for (const double x : {1.2, 2.8})
+        image.add_mesh(across_x({x, 1.2, 1.65}, 1), image.add(DiffuseMaterial{gray(0)}));
     const Agreement r = agreement_of(render_of_seeds(image.description, IntegratorKind::path, 64),
                                      render_of_seeds(sampled(mirrored), IntegratorKind::path, 64));
     EXPECT_LT(r.sigmas, 7) << 100 * r.bias << " %";
@@ -180,6 +186,11 @@ std::vector<Case> lamps() {
         b.add_uniform_light(0.3f);
         add_ball(b, perfect_mirror());
         add_ball(b, DielectricMaterial{1.5f}, {0.6, -0.3, 0.4}, 0.3);
+    });
+    add("sky", lit_corner(), [](SceneBuilder& b) {
+        b.add_uniform_light(1);
+        add_box_lamp(b, 2);
+        add_ball(b, perfect_mirror());
     });
     add("sun", lit_corner(), [](SceneBuilder& b) {
         SunLight sun;
