@@ -211,7 +211,8 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
         const std::optional<double> visible = visible_error(*result.image, task.tone, by_default);
         if (session->resumed() && result.error.mean_samples == session->samples_before())
             print_nothing_left(*session, report);
-        print_bad_samples(report.bad, sampler.seed, !sampler.chains);
+        print_bad_samples(report.bad, sampler.seed,
+                          !sampler.chains && !session->description().integrator.manifold_sampling);
         print_clamped(static_cast<double>(report.clamped_samples), result.clamped_luminance,
                       result.error.mean_luminance);
         if (!files.written().empty())

@@ -194,6 +194,12 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--light-sampling", o.light_sampling, light_sampling_names,
         "How one light is chosen among many: by its importance for the point that is lit, the default; in "
         "proportion to its power; or all alike: ");
+    add_parsed(c, "--manifold-sampling", "on|off", o.manifold_sampling, parse_on_off,
+               "Of path: caustics of a single smooth mirror, glass or water surface are found by walking on "
+               "it to the point "
+               "where it sends a lamp's light (specular manifold sampling), without bias. Pays where lamps "
+               "are small. "
+               "Default: off");
     add_choice(
         c, "--guiding", o.guiding, guiding_names,
         "Whether paths learn where light comes from, and follow it: where that pays, by a trial; always; or "
@@ -291,6 +297,7 @@ void apply(const RenderOptions& o, SceneDescription& d) {
         d.integrator.strategy = Strategy::mis; // whatever the scene's integrator was
     if (o.heuristic) d.integrator.heuristic = *o.heuristic;
     if (o.light_sampling) d.integrator.light_sampling = *o.light_sampling;
+    if (o.manifold_sampling) d.integrator.manifold_sampling = *o.manifold_sampling;
     if (o.guiding) d.integrator.guiding = *o.guiding;
     if (o.guiding_memory) d.integrator.guiding_memory = *o.guiding_memory;
     if (o.merging) {

@@ -52,6 +52,7 @@ struct RenderOptions {
     std::optional<Strategy> strategy;
     std::optional<Heuristic> heuristic;
     std::optional<LightSampling> light_sampling;
+    std::optional<bool> manifold_sampling;
     std::optional<Guiding> guiding;
     std::optional<std::uint64_t> guiding_memory; // MiB
     std::optional<std::optional<float>> merging; // empty inside: off; 0: chosen automatically

@@ -7,6 +7,7 @@
 
 #include "montelux/render/render_warnings.h"
 #include "montelux/scene/setting_names.h"
+#include "montelux/transport/manifold/casters.h"
 
 namespace montelux::app {
 
@@ -36,6 +37,15 @@ void print_chains(const ChainStatistics& s) {
 }
 
 } // namespace
+
+void print_casters(const SceneView& scene) {
+    const Casters casters(scene);
+    std::size_t lights = 0;
+    for (Index i = 0; i < static_cast<Index>(scene.lights.size()); ++i) lights += casters.covers(i) ? 1 : 0;
+    std::printf("manifold sampling  %zu of %zu shapes are casters, for %zu of %zu lights%s\n",
+                casters.all().size(), scene.shapes.size(), lights, scene.lights.size(),
+                casters.empty() ? ": it has no effect" : "");
+}
 
 void print_statistics(const RenderReport& report, double load_seconds, const Renderer& renderer) {
     auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
@@ -78,6 +88,7 @@ void print_statistics(const RenderReport& report, double load_seconds, const Ren
         std::printf("guide              none: it would not pay (gain %.2g after %u samples per pixel, %.2f s "
                     "of CPU)\n",
                     guide.gain, guide.samples, guide.cpu_seconds);
+    if (renderer.description().integrator.manifold_sampling) print_casters(renderer.scene());
     for (const EnvironmentSampler& map : renderer.scene().light_tables.environments)
         std::printf("environment        %s\n", map.description().c_str());
     for (const PortalSampler& map : renderer.scene().light_tables.portals)

@@ -7,6 +7,7 @@
 #include "montelux/render/sample_allocation.h"
 #include "montelux/scene/light_tracing_support.h"
 #include "montelux/scene/setting_names.h"
+#include "montelux/scene/view.h"
 
 namespace montelux {
 namespace {
@@ -56,6 +57,23 @@ void check_merging(const SceneDescription& d) {
                                    "': choose it, or leave merging out");
 }
 
+void check_manifold_sampling(const SceneDescription& d) {
+    const IntegratorSettings& s = d.integrator;
+    if (!s.manifold_sampling) return;
+    const auto refuse = [](const std::string& what) {
+        throw Error("manifold sampling", what + "; leave manifold sampling off");
+    };
+    if (s.method != IntegratorKind::path)
+        refuse("only the integrator 'path' has it, not '" + std::string(name_of(s.method)) + "'");
+    if (s.occlusion) refuse("ambient occlusion is no light");
+    if (s.guiding != Guiding::off) refuse("paths that learn where light comes from cannot be joined by it");
+    if (s.strategy != Strategy::mis) refuse("it needs the strategy 'mis'");
+    if (s.regularize) refuse("regularization makes smooth surfaces rough after a diffuse vertex");
+    if (s.shading_terminator == ShadingTerminator::soft)
+        refuse("the soft shading terminator is not supported");
+    if (SceneView(d.scene).has_media()) refuse("scenes with media or interfaces are not supported");
+}
+
 } // namespace
 
 SamplerSettings sampler_of(const SceneDescription& description) {
@@ -79,6 +97,7 @@ void check_render(const SceneDescription& d, const SamplerSettings& sampler, con
     if (d.integrator.occlusion && d.film.layers.set.has(Layer::light_groups))
         throw Error("film", "ambient occlusion is no light of the scene: 'light-groups' cannot be chosen");
     check_merging(d);
+    check_manifold_sampling(d);
     if (d.integrator.method == IntegratorKind::metropolis) check_metropolis(d, target);
     if (traces_light(d.integrator.method)) check_light_tracing(d, target);
 }

@@ -79,13 +79,16 @@ std::uint64_t hash_of_integrator(const IntegratorSettings& s) {
     const auto with_merging = [&](std::uint64_t h) {
         return merges(s) ? hash_of(h, s.merging->radius, s.merging->memory) : h;
     };
+    const auto with_manifolds = [&](std::uint64_t h) {
+        return s.manifold_sampling ? hash_of(h, 0x6d616e69666f6c64ULL) : h; // "manifold"
+    };
     if (s.occlusion) return with_background(hash_of(s.occlusion->cosine, s.occlusion->max_distance));
-    return with_merging(with_guiding(with_background(
+    return with_manifolds(with_merging(with_guiding(with_background(
         hash_of(s.max_depth, s.count_passages, static_cast<int>(s.strategy), static_cast<int>(s.heuristic),
                 static_cast<int>(s.light_sampling), s.equiangular, s.regularize,
                 static_cast<int>(s.environment_sampling), s.environment_compensation,
                 static_cast<int>(s.environment_lookup), static_cast<int>(s.microfacet_scattering),
-                static_cast<int>(s.shading_terminator)))));
+                static_cast<int>(s.shading_terminator))))));
 }
 // Another version of the program may take different samples.
 std::uint64_t version() { return hash_of(layout_version, hash_of_text(MONTELUX_VERSION)); }

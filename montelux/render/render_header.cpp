@@ -85,6 +85,7 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
         a["guided"] = report.guide.bytes > 0 ? 1 : 0;
         a["guideTrainingSamples"] = static_cast<int>(report.guide.samples);
     }
+    if (description.integrator.manifold_sampling) a["manifoldSampling"] = 1;
     a["equiangular"] = description.integrator.equiangular ? 1 : 0;
     a["environmentSampling"] = std::string(name_of(description.integrator.environment_sampling));
     a["environmentCompensation"] = description.integrator.environment_compensation ? 1 : 0;

@@ -41,6 +41,9 @@ SampleRecord Renderer::replay(int x, int y, std::uint64_t index) const {
         throw Error("guiding",
                     "a guided sample depends on what the render has learned before it: replay samples with "
                     "guiding off");
+    if (description_.integrator.manifold_sampling)
+        throw Error("manifold sampling",
+                    "its light is no part of the trace of a sample; replay samples with it off");
     if (traces_light(description_.integrator.method))
         throw Error("integrator " + std::string(name_of(description_.integrator.method)),
                     "its samples cannot be replayed: they have many paths; choose 'path'");

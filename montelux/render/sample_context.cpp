@@ -46,6 +46,10 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
                      description.integrator.method == IntegratorKind::path &&
                      integrator.strategy != Strategy::uniform) {
     if (description.film.spectral) buckets_.emplace(*description.film.spectral);
+    if (auto* path = std::get_if<PathIntegrator>(&integrator_); path && integrator.manifold_sampling) {
+        casters_ = std::make_shared<Casters>(scene);
+        if (!casters_->empty()) path->set_casters(casters_.get());
+    }
 }
 
 PathStart<SampleStream> SampleContext::begin(const Key& key, FilmPoint& point) const {

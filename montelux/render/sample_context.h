@@ -21,6 +21,7 @@
 #include "montelux/transport/guiding/guiding_trace.h"
 #include "montelux/transport/integrator.h"
 #include "montelux/transport/light_map.h"
+#include "montelux/transport/manifold/casters.h"
 #include "montelux/transport/merging_sample.h"
 
 namespace montelux {
@@ -82,6 +83,8 @@ class SampleContext {
     // From now on paths follow the guide; null: none does. Not while samples are taken.
     void set_guide(std::shared_ptr<const GuidingField> guide);
     const std::shared_ptr<const GuidingField>& guide() const { return guide_; }
+    // Surfaces and lights of manifold sampling; null: off.
+    const Casters* casters() const { return casters_.get(); }
     // Whether paths can follow a guide: those from the camera whose directions are drawn from BSDFs and phase functions.
     bool can_be_guided() const { return can_be_guided_; }
     // Samples that a guide learns from and the film does not get: the radiance of each (mean over the wavelengths; 0 if
@@ -136,6 +139,7 @@ class SampleContext {
     Integrator integrator_;
     std::shared_ptr<const GuidingField> guide_;
     std::shared_ptr<const LightMap> light_map_;
+    std::shared_ptr<const Casters> casters_; // null: no manifold sampling
     bool merges_;
     PixelFilterSampler filter_;
     FilmExposure exposure_;

@@ -87,6 +87,8 @@ struct IntegratorSettings {
     // Widens the microfacet lobes of surfaces that the path meets after an event that was not specular (Ggx::widened):
     // biased, without the fireflies of caustics.
     bool regularize = false;
+    // Of path: caustics of single smooth interfaces by specular manifold sampling (transport/manifold).
+    bool manifold_sampling = false;
     Guiding guiding = Guiding::off;
     std::size_t guiding_memory = 256;             // MiB at most, while a guide is trained
     std::optional<MergingSettings> merging{};     // of bidirectional

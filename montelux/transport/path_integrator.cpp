@@ -8,6 +8,8 @@ namespace montelux {
 
 void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Index light, const LightHit& hit,
                                    PathRecorder recorder) const {
+    if (state.chain == ManifoldChain::joined && casters_->covers(light)) [[unlikely]]
+        return;
     const LightContext context{scene, light, state.ray.time};
     const SampledSpectrum le = incident_radiance(context, state.previous, hit, state.lambda);
     if (is_black(le)) return;

@@ -7,6 +7,7 @@
 
 #include "montelux/scene/render_settings.h"
 #include "montelux/transport/guiding/guiding_field.h"
+#include "montelux/transport/manifold/casters.h"
 #include "montelux/transport/path_batch.h"
 #include "montelux/transport/path_recorder.h"
 #include "montelux/transport/path_state.h"
@@ -40,6 +41,10 @@ class PathIntegrator {
     // alone. It must outlive the paths.
     void set_guide(const GuidingField* guide) { guide_ = guide; }
 
+    // From now on covered lights are also found across casters (transport/manifold), and there by nothing else; null:
+    // by scattering. They must outlive the paths. Not with a guide.
+    void set_casters(const Casters* casters) { casters_ = casters; }
+
     // `record`, if given, receives the path vertex by vertex; the radiance is the same to the last bit.
     template <RandomStream Stream>
     FilmContribution estimate(const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
@@ -68,6 +73,10 @@ class PathIntegrator {
     // `shade` of several hits that have at least this level; empties the group.
     template <int W>
     void shade_diffuse(const SceneView& scene, LaneShading level, HitGroup<W>& group, PathBatch& batch) const;
+    // Light across casters at a hit that is not shaded yet.
+    template <RandomStream Stream>
+    void add_light_of_casters(const SceneView& scene, RayTracer& tracer, PathState& state, const Hit& hit,
+                              Stream& stream) const;
     // Adds a light that the state's ray hit.
     void add_met_light(const SceneView& scene, PathState& state, Index light, const LightHit& hit,
                        PathRecorder recorder) const;
@@ -79,6 +88,7 @@ class PathIntegrator {
     const Camera* camera_;
     float footprint_scale_;
     const GuidingField* guide_ = nullptr;
+    const Casters* casters_ = nullptr;
 };
 
 } // namespace montelux

@@ -10,6 +10,7 @@
 #include "montelux/transport/diffuse_lanes.h"
 #include "montelux/transport/guiding/guided_scattering.h"
 #include "montelux/transport/light_choice.h"
+#include "montelux/transport/manifold/manifold_light.h"
 #include "montelux/transport/path_integrator.h"
 #include "montelux/transport/uniform_scattering.h"
 
@@ -197,6 +198,12 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     state.throughput *= scattered->weight;
     state.bsdf_pdf = scattered->pdf;
     state.sees_lights = scattered->specular;
+    if (casters_ != nullptr) [[unlikely]] {
+        const bool joins = scattered->specular && state.chain == ManifoldChain::begun;
+        state.chain = !scattered->specular                ? ManifoldChain::begun
+                      : joins && casters_->has(hit.shape) ? ManifoldChain::joined
+                                                          : ManifoldChain::none;
+    }
     if (!scattered->specular) state.scattered_roughly = true;
     if (scattered->transmission) state.eta_scale *= scattered->eta * scattered->eta;
     const Vec3f wi = surface.frame.to_world(scattered->wi);
@@ -206,6 +213,14 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     state.ray.t_max = std::numeric_limits<float>::infinity();
     state.alive = vertex.survives();
     return shadow;
+}
+
+template <RandomStream Stream>
+void PathIntegrator::add_light_of_casters(const SceneView& scene, RayTracer& tracer, PathState& state,
+                                          const Hit& hit, Stream& stream) const {
+    if (state.depth + 2 > settings_.max_depth) return;
+    add_manifold_light(*casters_, scene, tracer, state, hit, *camera_, footprint_scale_,
+                       PhiloxStream::split(stream));
 }
 
 template <RandomStream Stream>
@@ -220,6 +235,8 @@ FilmContribution PathIntegrator::estimate(const SceneView& scene, RayTracer& tra
             escape(scene, state, recorder);
             break;
         }
+        if (casters_ != nullptr) [[unlikely]]
+            add_light_of_casters(scene, tracer, state, hit, stream);
         const std::optional<ShadowRay> shadow = shade(scene, state, hit, stream, recorder);
         if (!shadow) continue;
         if (!tracer.occluded(shadow->ray))
@@ -240,13 +257,19 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
         batch.states.emplace_back(start.camera);
     }
     constexpr bool in_lanes = std::same_as<Stream, SampleStream>;
-    const bool in_plain_lanes = settings_.strategy != Strategy::uniform && guide_ == nullptr;
+    const bool in_plain_lanes =
+        settings_.strategy != Strategy::uniform && guide_ == nullptr && casters_ == nullptr;
     HitGroup<native_lanes> groups[2];
     constexpr std::array levels{LaneShading::all, LaneShading::scattering};
     while (!batch.alive.empty()) {
         batch.rays.clear();
         for (Index i : batch.alive) batch.rays.push_back(&batch.states[i].ray);
         tracer.intersect(batch.rays, std::span(batch.hits).first(batch.rays.size()));
+
+        if (casters_ != nullptr) [[unlikely]]
+            for (std::size_t k = 0; k < batch.alive.size(); ++k)
+                if (const Index i = batch.alive[k]; batch.hits[k].shape != no_index)
+                    add_light_of_casters(scene, tracer, batch.states[i], batch.hits[k], starts[i].stream);
 
         batch.shadows.clear();
         batch.shadow_owners.clear();

@@ -1,11 +1,19 @@
 // PathState: a path between two of its vertices, as a plain value.
 #pragma once
 
+#include <cstdint>
 #include <type_traits>
 
 #include "montelux/transport/integrator_model.h"
 
 namespace montelux {
+
+// What manifold sampling has to do with the next light that a path meets (transport/manifold).
+enum class ManifoldChain : std::uint8_t {
+    none,
+    begun,  // the path scattered at a vertex that manifold sampling has joined to lights
+    joined, // ... and then at a caster: the light is counted already
+};
 
 struct PathState {
     Ray ray;                   // to be traced next
@@ -17,7 +25,8 @@ struct PathState {
     int depth = 0;                  // scattering events so far
     bool sees_lights = true;        // no other strategy can find the light that the ray hits
     bool scattered_roughly = false; // some event so far was not specular
-    bool alive = true;              // false: the path has ended; do not trace the ray
+    ManifoldChain chain = ManifoldChain::none;
+    bool alive = true; // false: the path has ended; do not trace the ray
     FirstHit first;
     float transparency = 0;         // as in FilmContribution
     SampleExtras* extras = nullptr; // null: not wanted

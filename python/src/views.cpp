@@ -321,6 +321,9 @@ void bind_views(nb::module_& m) {
     choice(integrator, "light_sampling", &IntegratorSettings::light_sampling, light_samplings,
            "How one light is chosen among many: by its importance for the point that is lit, in a 'tree'; in "
            "proportion to its 'power'; or 'uniform'.");
+    flag(integrator, "manifold_sampling", &IntegratorSettings::manifold_sampling,
+         "Of 'path': caustics of single smooth mirrors and interfaces are found by specular manifold "
+         "sampling; for small lamps.");
     choice(integrator, "guiding", &IntegratorSettings::guiding, guidings,
            "Whether paths learn where light comes from, and follow it: 'auto' (where that pays), 'on' or "
            "'off'.");

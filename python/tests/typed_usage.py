@@ -182,7 +182,7 @@ def scenes(text: str) -> montelux.Comparison:
     ball: montelux.Shape = scene.add_sphere(1, montelux.Diffuse(reflectance=0.5))
     film, sampler, integrator = montelux.Film(), montelux.Sampler(), montelux.Integrator()
     assert all(isinstance(setting, object) for setting in (ball, film, sampler, integrator))
-    integrator.guiding_memory = 64
+    integrator.guiding_memory, integrator.manifold_sampling = 64, True
     integrator.guiding, integrator.method, integrator.large_step_probability = "auto", "metropolis", 0.3
     seen: list[montelux.Progress] = []
     render: montelux.Render = scene.render(spp=4, progress=seen.append)

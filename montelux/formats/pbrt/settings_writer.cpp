@@ -267,6 +267,7 @@ void SceneWriter::integrator() {
         option(s.light_sampling == standard.light_sampling, "--light-sampling");
     }
     option(s.heuristic == standard.heuristic, "--heuristic balance");
+    option(s.manifold_sampling == standard.manifold_sampling, "--manifold-sampling on");
     option(s.equiangular == standard.equiangular, "--equiangular off");
     option(s.environment_sampling == standard.environment_sampling, "--environment-sampling");
     option(s.environment_compensation == standard.environment_compensation, "--environment-compensation off");
