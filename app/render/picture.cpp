@@ -226,6 +226,8 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
             std::printf("%s\n", notice.c_str());
         if (const std::string warning = merging_memory_warning(report.merging); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
+        if (const std::string warning = manifold_warning(session->renderer()); !warning.empty())
+            std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = chain_warning(report.chains); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = missing_error_warning(result, session->renderer()); !warning.empty())

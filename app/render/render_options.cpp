@@ -194,12 +194,11 @@ void declare(CLI::App& c, RenderOptions& o) {
         c, "--light-sampling", o.light_sampling, light_sampling_names,
         "How one light is chosen among many: by its importance for the point that is lit, the default; in "
         "proportion to its power; or all alike: ");
-    add_parsed(c, "--manifold-sampling", "on|off", o.manifold_sampling, parse_on_off,
-               "Of path: caustics of a single smooth mirror, glass or water surface are found by walking on "
-               "it to the point "
-               "where it sends a lamp's light (specular manifold sampling), without bias. Pays where lamps "
-               "are small. "
-               "Default: off");
+    add_parsed(
+        c, "--manifold-sampling", "on|off", o.manifold_sampling, parse_on_off,
+        "Of path: caustics of one smooth mirror or one smooth surface of glass or water are found by "
+        "walking on it to where it sends a lamp's light (specular manifold sampling). Pays where lamps are "
+        "small. Default: off");
     add_choice(
         c, "--guiding", o.guiding, guiding_names,
         "Whether paths learn where light comes from, and follow it: where that pays, by a trial; always; or "

@@ -36,16 +36,15 @@ void print_chains(const ChainStatistics& s) {
     std::printf("agreement          R-hat %.3f over groups\n", s.agreement.worst_r_hat());
 }
 
-} // namespace
-
 void print_casters(const SceneView& scene) {
     const Casters casters(scene);
     std::size_t lights = 0;
     for (Index i = 0; i < static_cast<Index>(scene.lights.size()); ++i) lights += casters.covers(i) ? 1 : 0;
-    std::printf("manifold sampling  %zu of %zu shapes are casters, for %zu of %zu lights%s\n",
-                casters.all().size(), scene.shapes.size(), lights, scene.lights.size(),
-                casters.empty() ? ": it has no effect" : "");
+    std::printf("manifold sampling  %zu of %zu shapes are casters, for %zu of %zu lights\n",
+                casters.all().size(), scene.shapes.size(), lights, scene.lights.size());
 }
+
+} // namespace
 
 void print_statistics(const RenderReport& report, double load_seconds, const Renderer& renderer) {
     auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());

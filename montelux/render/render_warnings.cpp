@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "montelux/render/sample_order.h"
+#include "montelux/transport/manifold/casters.h"
 
 namespace montelux {
 
@@ -17,6 +18,15 @@ std::string bad_sample_warning(const BadSampleReport& bad, std::uint64_t seed) {
            text(bad.infinite) + " infinite, " + text(bad.negative) + " negative); the first, " + kind +
            ", is sample " + text(bad.first->sample) + " of pixel " + text(bad.first->x) + "," +
            text(bad.first->y) + " with seed " + text(seed);
+}
+
+std::string manifold_warning(const Renderer& renderer) {
+    if (!renderer.description().integrator.manifold_sampling) return {};
+    const Casters casters(renderer.scene());
+    if (!casters.empty()) return {};
+    return std::string("manifold sampling has no effect: ") +
+           (casters.all().empty() ? "no shape is a smooth mirror or smooth glass of the kinds that it covers"
+                                  : "no light is of the kinds that it covers");
 }
 
 std::string chain_warning(const ChainStatistics& chains) {

@@ -19,6 +19,9 @@ std::string merging_notice(const RenderSnapshot& result, const RenderTarget& tar
 // That its light paths did not fit into the memory; empty if they did.
 std::string merging_memory_warning(const MergingSummary& merging);
 
+// That manifold sampling finds no caster or no light to sample; empty if it does, or is off.
+std::string manifold_warning(const Renderer& renderer);
+
 // For an interrupted render whose picture has no errors; empty if they are known, and for slices, which get
 // errors when they are merged.
 std::string missing_error_warning(const RenderSnapshot& result, const Renderer& renderer);

@@ -83,8 +83,6 @@ class SampleContext {
     // From now on paths follow the guide; null: none does. Not while samples are taken.
     void set_guide(std::shared_ptr<const GuidingField> guide);
     const std::shared_ptr<const GuidingField>& guide() const { return guide_; }
-    // Surfaces and lights of manifold sampling; null: off.
-    const Casters* casters() const { return casters_.get(); }
     // Whether paths can follow a guide: those from the camera whose directions are drawn from BSDFs and phase functions.
     bool can_be_guided() const { return can_be_guided_; }
     // Samples that a guide learns from and the film does not get: the radiance of each (mean over the wavelengths; 0 if

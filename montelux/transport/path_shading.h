@@ -200,9 +200,9 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     state.sees_lights = scattered->specular;
     if (casters_ != nullptr) [[unlikely]] {
         const bool joins = scattered->specular && state.chain == ManifoldChain::begun;
-        state.chain = !scattered->specular                ? ManifoldChain::begun
-                      : joins && casters_->has(hit.shape) ? ManifoldChain::joined
-                                                          : ManifoldChain::none;
+        state.chain = !scattered->specular                                            ? ManifoldChain::begun
+                      : joins && hit.instance == no_index && casters_->has(hit.shape) ? ManifoldChain::joined
+                                                                                      : ManifoldChain::none;
     }
     if (!scattered->specular) state.scattered_roughly = true;
     if (scattered->transmission) state.eta_scale *= scattered->eta * scattered->eta;

@@ -88,6 +88,7 @@ std::vector<std::string> warnings_of(const RenderJob& job) {
                                    missing_error_warning(result, session.renderer()),
                                    merging_notice(result, session.renderer().target()),
                                    merging_memory_warning(result.report.merging),
+                                   manifold_warning(session.renderer()),
                                    session.checkpoint_failure(),
                                    result.denoise_failure};
     std::erase(texts, "");

@@ -89,6 +89,42 @@ TEST(ManifoldSampling, WaterLiftsTheFloor) {
     }
 }
 
+// A spot of a floor beside a mirror: the light and its image, each alone. The mirror is a plate of the given thickness.
+PictureMean beside_a_plate(double thickness, Vec3d moved) {
+    SceneBuilder b;
+    const Transform t = Transform::translate(moved);
+    b.add_mesh(square(t * Transform::scale({6, 6, 1})), b.add(DiffuseMaterial{gray(0.8f)}));
+    TriangleMesh plate;
+    for (const double x : {2.0, 2 + thickness})
+        for (const double y : {-3.0, 3.0})
+            for (const double z : {-3.0, 3.0}) plate.positions.push_back(Vec3f(t.point(Vec3d{x, y, z})));
+    plate.indices = {0, 1, 3, 0, 3, 2, 4, 7, 5, 4, 6, 7}; // normals point away from each other
+    b.add_mesh(plate, b.add(perfect_mirror()));
+    b.scene.lights.push_back(
+        PointLight{white_light(b.scene), 3 * white_scale(), Vec3f(t.point(Vec3d{1.5, 0, 1}))});
+    b.look(t.point(Vec3d{0, 0, 1}), t.point(Vec3d{0.3, 0, 0}), 0.1f);
+    SceneDescription d = sampled(b);
+    d.integrator.max_depth = 2;
+    d.sampler.spp = 64;
+    return picture_mean(render(d));
+}
+
+TEST(ManifoldSampling, ThinPlatesReflectOnce) {
+    const auto brightness = [](double across) { // of the floor; 1 below the light
+        const double squared = across * across + 1;
+        return 1 / (squared * std::sqrt(squared));
+    };
+    const double expected = 0.8 / pi * 3 * (brightness(1.2) + brightness(2.2));
+    for (const Vec3d moved : {Vec3d{}, Vec3d{300, -100, 200}, Vec3d{4096, 1024, -2048}})
+        for (const double thickness : {1e-5, 1e-4, 1e-3, 0.1}) {
+            if (thickness < 0.1 && moved.x > 1000) continue; // less than positions can tell
+            const PictureMean mean = beside_a_plate(thickness, moved);
+            EXPECT_LT(std::abs(mean.mean - expected), 5 * mean.standard_error + 2e-3 * expected)
+                << moved.x << " " << thickness << ": " << mean.mean << " " << expected;
+            EXPECT_LT(mean.standard_error, 0.01 * expected);
+        }
+}
+
 void add_waves(SceneBuilder& b, double height, double slope, const Material& m) {
     b.add_mesh(wavy_mesh(slope, 10, Transform::translate({0, 0, height}) * Transform::scale({1.4, 1.4, 1})),
                b.add(m));

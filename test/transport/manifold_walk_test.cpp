@@ -5,6 +5,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
+#include <vector>
 
 #include "montelux/accel/accelerator.h"
 #include "montelux/mc/math/frame.h"
@@ -219,6 +220,52 @@ TEST(ManifoldWalk, TrialsCountTheInverseProbability) {
         EXPECT_LT(std::abs(trials.mean() * shares[i] - 1), 5 * error) << shares[i];
     }
     EXPECT_GE(tested, 3);
+}
+
+// A valley of two facets, nearly flat: each sends the light of a lamp above to a vertex above, and so close to the
+// other's that only the facets tell them apart.
+TEST(ManifoldWalk, SolutionsOnTwoFacetsAreTwo) {
+    constexpr float slope = 1e-3f / 1024;
+    SceneBuilder b;
+    TriangleMesh valley;
+    valley.positions = {{0, -1, 0}, {0, 1, 0}, {1, 0, slope}, {-1, 0, slope}};
+    valley.indices = {0, 2, 1, 0, 1, 3};
+    b.add_mesh(valley, b.add(mirror()));
+    const CasterScene world(b.description);
+    const ManifoldEnds ends = ends_of({0, 0, 1}, {0, 0.1, 1.25});
+    PhiloxStream stream(3);
+    std::vector<ManifoldSolution> found;
+    for (int i = 0; i < 100; ++i)
+        if (const auto s = world.walk(ends, stream)) found.push_back(*s);
+    ASSERT_GT(found.size(), 50u);
+    int same = 0;
+    for (const ManifoldSolution& s : found) {
+        EXPECT_LT(std::abs(s.point.p.x), 2e-6);
+        if (is_same(s, found.front(), ends)) {
+            ++same;
+            EXPECT_EQ(s.point.p.x > 0, found.front().point.p.x > 0);
+        }
+    }
+    EXPECT_GT(same, 10);
+    EXPECT_LT(same, static_cast<int>(found.size()) - 10);
+}
+
+TEST(Casters, OfAllSizesAreChosen) {
+    SceneBuilder b;
+    b.add_mesh(square(Transform()), b.add(mirror()));
+    b.add_mesh(square(Transform::scale({1e5, 1e5, 1})), b.add(mirror()));
+    const SceneTables tables(b.scene);
+    const Casters casters(tables.view());
+    double of_small = 0, sum = 0;
+    for (int i = 0; i < 1000; ++i) {
+        const auto [caster, probability] = casters.choose_caster((i + 0.5) / 1000);
+        const bool small = caster == &casters.all().front();
+        EXPECT_NEAR(probability, small ? 0.25 : 0.75, 1e-6);
+        of_small += small;
+        sum += 1 / probability;
+    }
+    EXPECT_NEAR(of_small, 250, 2);
+    EXPECT_NEAR(sum / 1000, 2, 0.02);
 }
 
 TEST(Casters, AreSmoothAndAtRest) {

@@ -86,6 +86,14 @@ bool is_covered(const SceneView& scene, Index light) {
                       scene.lights[light]);
 }
 
+// Half of the probability in proportion to the sizes, half for all alike.
+void even_out(std::vector<double>& sizes) {
+    const double largest = *std::max_element(sizes.begin(), sizes.end());
+    double sum = 0;
+    for (double& x : sizes) sum += x = largest > 0 ? x / largest : 1;
+    for (double& x : sizes) x += sum / static_cast<double>(sizes.size());
+}
+
 void set_axes(CasterPoint& point, double scale) {
     const auto frame = FrameOf<double>::from_normal(point.n);
     point.dpdu = frame.s * scale;
@@ -178,7 +186,10 @@ Casters::Casters(const SceneView& scene)
             casters_.push_back(*std::move(caster));
             is_caster_[shape] = 1;
         }
-    if (!areas.empty()) by_area_.emplace(areas);
+    if (!areas.empty()) {
+        even_out(areas);
+        choice_.emplace(areas);
+    }
 
     std::vector<Index> counts(scene.lights.size(), 0);
     for (Index i = 0; i < static_cast<Index>(counts.size()); ++i)
@@ -193,6 +204,7 @@ Casters::Casters(const SceneView& scene)
         if (counts[i] > 0) light_powers({scene, i}, std::span(powers).subspan(parts.row(i, 0), counts[i]));
     // As for all lights (scene_tables.cpp).
     for (double& power : powers) power = power > 0 ? std::min(power, 1e290) : 0;
+    even_out(powers);
     lights_.emplace(std::move(parts), powers);
 }
 

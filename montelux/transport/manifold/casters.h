@@ -66,18 +66,19 @@ class Casters {
         const Caster* caster;
         double probability;
     };
-    // In proportion to area.
+    // Half of them in proportion to area, half all alike: neither a large surface far away nor one without effect keeps
+    // others from being chosen.
     Choice choose_caster(double u) const {
-        const auto chosen = by_area_->sample(u);
+        const auto chosen = choice_->sample(u);
         return {&casters_[chosen.index], chosen.probability};
     }
-    // Among covered lights, in proportion to power.
+    // Among the parts of covered lights, half in proportion to power and half all alike.
     LightChoice choose_light(double u) const { return lights_->sample({}, u); }
 
   private:
     std::vector<Caster> casters_;
     std::vector<char> is_caster_, covered_; // of each shape, of each light: 0 or 1
-    std::optional<AliasTable> by_area_;
+    std::optional<AliasTable> choice_;      // of a caster
     std::optional<PowerLightSampler> lights_;
 };
 

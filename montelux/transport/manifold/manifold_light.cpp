@@ -15,8 +15,9 @@ namespace montelux {
 
 namespace {
 
-// Of distance, between a vertex of the walk and the surface that a ray finds there.
-constexpr double hit_tolerance = 1e-4;
+// Between a vertex of the walk and the surface that a ray finds there: of distance, and of coordinates in single
+// precision.
+constexpr double hit_tolerance = 1e-4, coordinate_tolerance = 16 * 0x1p-24;
 
 // A point of a light, chosen for a vertex that it does not depend on.
 struct LightPoint {
@@ -116,18 +117,30 @@ struct Estimate {
                              scene.is_textured(material) || scene.frame_follows_tangents(material));
     }
 
+    // Whether the ray found the solution, and not the other side of a thin plate.
+    static bool is_at(const SurfacePoint& s, const Hit& hit, const Ray& ray, const Caster& caster,
+                      const CasterPoint& point) {
+        if (std::holds_alternative<CasterMesh>(caster.geometry) && hit.primitive == point.primitive)
+            return true;
+        const Vec3d d(ray.d), n(s.ns);
+        if (!(dot(n, point.n) > 0 && (dot(n, d) > 0) == (dot(point.n, d) > 0))) return false;
+        const double distance = length(point.p - Vec3d(ray.o)), size = max_component(abs(point.p));
+        return std::abs(double(hit.t) - distance) <= hit_tolerance * distance + coordinate_tolerance * size;
+    }
+
     // Light through the solution per density over the light, and the direction that it arrives from; black if
     // something occludes it.
     SampledSpectrum radiance(const Caster& caster, const ManifoldEnds& ends, const LightPoint& light,
                              const ManifoldSolution& solution, Vec3f& wi) const {
         wi = normalize(Vec3f(solution.point.p - ends.vertex()));
+        const Point3f origin = offset_origin(ends.from.p, ends.from.n, ends.from.error, wi);
+        // Aimed from where it begins, which may be far from the vertex beside the distance.
         const Ray ray{
-            .o = offset_origin(ends.from.p, ends.from.n, ends.from.error, wi), .d = wi, .time = ends.time};
+            .o = origin, .d = normalize(Vec3f(solution.point.p - Vec3d(origin))), .time = ends.time};
         Hit hit;
         if (!tracer.intersect(ray, hit) || hit.shape != caster.shape || hit.instance != no_index) return {};
-        const double distance = length(solution.point.p - Vec3d(ray.o));
-        if (!(std::abs(double(hit.t) - distance) <= hit_tolerance * distance)) return {};
         const SurfacePoint s = surface_at(ray, hit);
+        if (!is_at(s, hit, ray, caster, solution.point)) return {};
         const ReferencePoint at{s.p, s.ng, s.error, Vec3f{}};
         const std::optional<IncidentLight> incident = incident_light(light, at, lambda);
         if (!incident || is_black(incident->value)) return {};

@@ -14,7 +14,8 @@ constexpr int most_steps = 20;
 constexpr double smallest_share = 1.0 / 32; // of a step that leads off the caster
 // Of the constraint, in units of the generalised half vector's summands.
 constexpr double tolerance = 1e-9;
-// Distance of equal solutions over that of the vertex.
+// Distance of equal solutions over that of the vertex. Those on different triangles differ however close they are: one
+// triangle has one solution, or several that are far apart beside the steps of the walk.
 constexpr double separation = 1e-5;
 
 struct Matrix2 {
@@ -124,7 +125,7 @@ std::optional<ManifoldSolution> walk_manifold(const SceneView& scene, RayTracer&
 }
 
 bool is_same(const ManifoldSolution& a, const ManifoldSolution& b, const ManifoldEnds& ends) {
-    if (a.reflects != b.reflects) return false;
+    if (a.reflects != b.reflects || a.point.primitive != b.point.primitive) return false;
     const double scale = separation * length(a.point.p - ends.vertex());
     return length_squared(a.point.p - b.point.p) < scale * scale;
 }
