@@ -225,8 +225,10 @@ std::vector<Case> lamps() {
     });
     add("sky", lit_corner(), [](SceneBuilder& b) {
         b.add_uniform_light(1);
-        add_box_lamp(b, 2);
-        add_ball(b, perfect_mirror());
+        add_box_lamp(b, 0.6);
+        b.add_mesh(square(Transform::translate({1.2, 0, 1}) * Transform::rotate(90, {0, 1, 0}) *
+                          Transform::scale({1.5, 1.5, 1})),
+                   b.add(perfect_mirror()));
     });
     add("sun", lit_corner(), [](SceneBuilder& b) {
         SunLight sun;
