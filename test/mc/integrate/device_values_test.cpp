@@ -264,6 +264,16 @@ TEST_F(OnEmulatedDevice, WhatADeviceCannotDoIsSaid) {
     expect_error("there is no device 'cudo' (did you mean 'cuda'?)", [] { Device::open("cudo"); });
 }
 
+TEST_F(OnEmulatedDevice, SourcesMayDefineFunctionsOfCuda) {
+    const auto f = compiled({.text = "static double normcdfinv(double p) { return 2 * p; }\n"
+                                     "double integrand(int, const double* x) { return normcdfinv(x[0]); }\n"},
+                            1);
+    f->prepare_mixtures();
+    EXPECT_NEAR(
+        integrate(Integrand::compiled(f), Domain::interval(0, 1), Quasi{}, {.evaluations = 4096}).value[0], 1,
+        1e-4);
+}
+
 TEST_F(OnEmulatedDevice, TheCompilersMessagesAreInTheError) {
     const auto compile = [](const std::string& text, const std::string& function = "integrand") {
         compiled({.text = text, .file = "bad.cu", .function = function}, 1);
