@@ -51,6 +51,8 @@ class CudaContextOwner {
             : driver_(cuda.driver), result_(driver_.push_context(cuda.context_)) {}
         ~Visit() {
             CudaDriver::Context left = nullptr;
+            // Also where the driver pushed and reports the failure of an earlier launch: then each call fails that
+            // concerns the context, whichever is current.
             if (entered()) driver_.pop_context(&left);
         }
         Visit(const Visit&) = delete;
