@@ -35,7 +35,8 @@ class DeviceValues {
     }
     // Blocks are summed on the device from here on, if the integrand has one component. Values are copied of batches
     // alone whose sums do not say everything: with values that are not finite, that must be scaled, or that are larger
-    // in magnitude than `floor`, that of their tail.
+    // in magnitude than `floor`, that of their tail. What OnDevice::after does to values is asked of the least and the
+    // greatest of a batch, in a call of their own: where it leaves these, it must leave those between them.
     void summarise_above(double floor);
     // Of the batch that begins at that point of the block; null where its values were copied, for read().
     const DeviceSummary* summary(std::uint64_t number) const;
