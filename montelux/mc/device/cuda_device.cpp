@@ -51,6 +51,8 @@ class CudaContextOwner {
             : driver_(cuda.driver), result_(driver_.push_context(cuda.context_)) {}
         ~Visit() {
             CudaDriver::Context left = nullptr;
+            // After a failed push there is nothing to pop, unless it reports the failure of an earlier launch and
+            // pushed all the same: the driver does not say. The context, whose every call fails then, stays current.
             if (entered()) driver_.pop_context(&left);
         }
         Visit(const Visit&) = delete;

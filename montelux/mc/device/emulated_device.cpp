@@ -16,10 +16,8 @@ namespace {
 class EmulatedProgram final : public DeviceProgram {
   public:
     explicit EmulatedProgram(SharedLibrary library) : library_(std::move(library)) {
-        run_ = library_.find<RunGrid>("montelux_run_grid");
-        summarise_ = library_.find<RunGrid>("montelux_run_summaries");
-        if (run_ == nullptr || summarise_ == nullptr)
-            throw Error("emulated device", "the compiled kernels have no montelux_run_grid");
+        run_ = find("montelux_run_grid");
+        summarise_ = find("montelux_run_summaries");
     }
     void run(const DeviceJob& job) override {
         run_(&job, device_blocks(job.count, device_block_threads), device_block_threads, normal_quantile);
@@ -30,6 +28,11 @@ class EmulatedProgram final : public DeviceProgram {
 
   private:
     using RunGrid = void (*)(const DeviceJob*, unsigned int, unsigned int, double (*quantile)(double));
+
+    RunGrid find(const std::string& name) const {
+        if (const auto found = library_.find<RunGrid>(name.c_str())) return found;
+        throw Error("emulated device", "the compiled kernels have no " + name);
+    }
 
     SharedLibrary library_;
     RunGrid run_, summarise_;

@@ -68,10 +68,10 @@ extern "C" __global__ void montelux_evaluate(DeviceJob job) {
 }
 
 #ifndef __CUDACC__
-// The threads of a grid one after another. `quantile` is that of the standard normal law, which C++ lacks.
+// The threads of a grid one after another. `quantile` is that of the standard normal law.
 extern "C" void montelux_run_grid(const DeviceJob* job, unsigned int blocks, unsigned int threads,
                                   double (*quantile)(double)) {
-    normcdfinv = quantile;
+    montelux::normcdfinv = quantile;
     blockDim.x = threads;
     for (blockIdx.x = 0; blockIdx.x < blocks; ++blockIdx.x)
         for (threadIdx.x = 0; threadIdx.x < threads; ++threadIdx.x) montelux_evaluate(*job);

@@ -18,7 +18,6 @@ struct montelux_index {
     unsigned int x, y, z;
 };
 static thread_local montelux_index blockIdx, blockDim, threadIdx;
-static thread_local double (*normcdfinv)(double);
 #endif
 )";
 

@@ -8,6 +8,11 @@ typedef unsigned long long montelux_long;
 
 namespace montelux {
 
+#ifndef __CUDACC__
+// The quantile of the standard normal law, which CUDA has and C++ lacks. The integrand may define its own.
+static thread_local double (*normcdfinv)(double);
+#endif
+
 __device__ inline double unit_double(montelux_long digits) {
     // The middle of a cell of width 2^-52.
     return ((double)digits + 0.5) * 0x1p-52;

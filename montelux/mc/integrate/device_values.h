@@ -24,17 +24,19 @@ class DeviceValues {
     DeviceSampler& sampler() { return sampler_; }
     // Points of a block: as many as the integrand asks for, if memory allows, and at least a batch.
     std::uint64_t block_size() const {
-        return std::clamp<std::uint64_t>(g_.integrand().on_device().block, batch_size, most_points());
-    }
-    // Points of which a block has room for the values.
-    std::uint64_t most_points() const {
         constexpr std::uint64_t most_bytes = 1 << 27, least = 1 << 12, most = 1 << 20;
         const std::uint64_t bytes = sizeof(double) * (static_cast<std::uint64_t>(g_.components()) + 2);
-        return std::clamp(most_bytes / bytes, least, most);
+        return std::clamp<std::uint64_t>(g_.integrand().on_device().block, batch_size,
+                                         std::clamp(most_bytes / bytes, least, most));
+    }
+    // The same of each replicate, where a block has points of all: at least one.
+    std::uint64_t block_of_each(std::uint64_t replicates) const {
+        return std::max<std::uint64_t>(1, block_size() / replicates);
     }
     // Blocks are summed on the device from here on, if the integrand has one component. Values are copied of batches
     // alone whose sums do not say everything: with values that are not finite, that must be scaled, or that are larger
-    // in magnitude than `floor`, that of their tail.
+    // in magnitude than `floor`, that of their tail. What OnDevice::after does to values is asked of the least and the
+    // greatest of a batch, in a call of their own: where it leaves these, it must leave those between them.
     void summarise_above(double floor);
     // Of the batch that begins at that point of the block; null where its values were copied, for read().
     const DeviceSummary* summary(std::uint64_t number) const;

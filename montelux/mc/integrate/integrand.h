@@ -20,11 +20,11 @@ class DeviceFunction;
 // Where an integrand is evaluated at points that a device draws, and what happens to its values besides.
 struct OnDevice {
     std::shared_ptr<const DeviceFunction> function; // null: on no device
-    // Called before a number of points is evaluated, and with their values after it; may throw.
+    // Called before a number of points is evaluated, and with values after it; may throw. Of a batch that a device sums
+    // `after` gets the least and the greatest value first, and all if it changes these (DeviceValues::summarise_above).
     std::vector<std::function<void(std::size_t)>> before = {};
     std::vector<std::function<void(ValueBatch)>> after = {};
-    // Points that are evaluated at a time: enough to hide the start of a kernel.
-    std::size_t block = 1 << 20;
+    std::size_t block = 1 << 20; // points that are evaluated at a time: enough to hide the start of a kernel
 };
 
 // A function in one of the forms that users write, called once per batch. Functions are called from several

@@ -77,6 +77,7 @@ class Run {
                  : targeted_ || has_time() ? no_limit
                                            : default_evaluations;
         make_estimator();
+        start_ = Clock::now(); // a device has compiled the estimator's kernels
     }
 
     double exponent() const { return scale_.exponent(0); }
@@ -367,7 +368,7 @@ class Run {
     std::unique_ptr<Estimator> estimator_;
     IterationHistory history_;
     double seconds_before_ = 0; // in earlier parts of a run that was resumed
-    Clock::time_point start_ = Clock::now();
+    Clock::time_point start_;
 };
 
 } // namespace

@@ -1,6 +1,7 @@
 // Values that a device sums: the processor's bits, with what the sums do not say, and few values left to the processor.
 #include "test/mc/integrate/integrate_testing.h"
 #include "test/mc/integrate/on_emulated_device.h"
+#include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -8,9 +9,12 @@
 #include <utility>
 
 #include "montelux/mc/integrate/basic_monte_carlo.h"
+#include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/lane_sum.h"
 #include "montelux/mc/integrate/quasi/quasi.h"
+#include "montelux/mc/integrate/unit_points.h"
 
 namespace montelux {
 namespace {
@@ -55,6 +59,66 @@ TEST_F(SumsOnEmulatedDevice, EstimatesHaveTheProcessorsBits) {
             EXPECT_EQ(a.first_non_finite_point, b.first_non_finite_point) << f.name;
         }
     }
+}
+
+TEST_F(SumsOnEmulatedDevice, BatchesHaveTheProcessorsBits) {
+    constexpr std::uint64_t count = 40 * batch_size + 77; // the last one is short
+    static constexpr double floor = 1e4, most = 1.95;
+    const Domain domain({{0, infinity}, {-1, 2}});
+    OnDevice clamped =
+        integrand("double integrand(int, const double* x) { return x[1] / (1 + x[0]); }", 2).on_device();
+    std::uint64_t passed = 0;
+    clamped.after.emplace_back([&passed](ValueBatch f) {
+        passed += f.count();
+        for (double& v : f.component(0)) v = std::min(v, most);
+    });
+    double largest = 0; // of f
+    const Evaluator here(Integrand([&largest](std::span<const double> x) {
+                             const double f = x[1] / (1 + x[0]);
+                             largest = std::max(largest, f);
+                             return std::min(f, most);
+                         }),
+                         domain);
+    const Evaluator there(Integrand::compiled(clamped.function).with_device(clamped), domain);
+    const auto device = DeviceValues::of(there);
+    device->summarise_above(floor);
+    device->draw_random(5, 0, 0, count);
+    const std::uint64_t asked = passed;
+    std::uint64_t summed = 0, clamps = 0, tails = 0;
+    for (std::uint64_t first = 0; first < count; first += batch_size) {
+        const std::uint64_t n = std::min(batch_size, count - first);
+        PointBuffer u(n, 2);
+        fill_random(u, 5, 0, first);
+        ValueBuffer values(n, 1);
+        NonFiniteCount none;
+        largest = 0;
+        here(u, values, none);
+        const std::span<const double> g = std::as_const(values).component(0);
+        const bool in_tail = std::ranges::any_of(g, [](double v) { return std::abs(v) > floor; });
+        const DeviceSummary* const s = device->summary(first);
+        ASSERT_EQ(s == nullptr, in_tail || largest > most) << first;
+        tails += in_tail ? 1 : 0;
+        clamps += largest > most ? 1 : 0;
+        if (s != nullptr) {
+            ++summed;
+            EXPECT_EQ(s->sum, lane_sum(n, [g](std::size_t i) { return g[i]; })) << first;
+            EXPECT_EQ(s->squares, lane_sum(n, [g](std::size_t i) { return g[i] * g[i]; })) << first;
+            SampleMoments a{CovarianceMoments(1, false), {}}, b = a;
+            a.add(*s, n);
+            b.add(values);
+            EXPECT_EQ(a.moments.mean(0), b.moments.mean(0)) << first;
+            EXPECT_EQ(a.moments.variance(0), b.moments.variance(0)) << first;
+        } else {
+            ValueBuffer copied(n, 1);
+            device->read(first, copied, {}, none);
+            EXPECT_TRUE(std::ranges::equal(std::as_const(copied).component(0), g)) << first;
+        }
+    }
+    // Of batches without a tail the least and the greatest value, and no others before they are read.
+    EXPECT_EQ(asked, 2 * (count / batch_size + 1 - tails));
+    EXPECT_GT(summed, 10u);
+    EXPECT_GT(clamps, 3u);
+    EXPECT_GT(tails, 3u);
 }
 
 TEST_F(SumsOnEmulatedDevice, TheProcessorSumsFewValues) {

@@ -53,11 +53,10 @@ class QuasiEstimator final : public Estimator {
         const std::uint64_t each = request.max_evaluations / static_cast<std::uint64_t>(replicates);
         const std::uint64_t next = next_ ? next_ : choose_points(request, each);
         const std::uint64_t begin = (extensible() ? points_ : 0) + position_;
-        const std::uint64_t most = device_ ? device_->most_points() : 1 << 20;
-        const std::uint64_t size =
-            next == 0 ? 0
-                      : std::min({next - begin, each,
-                                  std::max<std::uint64_t>(1, most / static_cast<std::uint64_t>(replicates))});
+        const auto all = static_cast<std::uint64_t>(replicates);
+        const std::uint64_t most =
+            device_ ? device_->block_of_each(all) : std::max<std::uint64_t>(1, large_step / all);
+        const std::uint64_t size = next == 0 ? 0 : std::min({next - begin, each, most});
         if (size == 0) return StepOutcome::exhausted;
         ReplicateSums sums(replicates, problem_.evaluator.components());
         NonFiniteCount non_finite;

@@ -116,10 +116,8 @@ class SobolVegas final : public VegasEstimator {
     std::uint64_t chunk(const Iteration& iteration, std::uint64_t limit) const {
         const double room = static_cast<double>(limit) / (1 + settings_.uniform_share);
         const auto most = static_cast<std::uint64_t>(room / static_cast<double>(replicates()));
-        // A device keeps the values of a step.
-        const std::uint64_t step = device_ ? std::min(large_step, device_->most_points()) : large_step;
-        const std::uint64_t large = std::bit_floor(
-            std::max({step / replicates(), device_ ? 0 : iteration.points / 8, std::uint64_t{1}}));
+        const std::uint64_t large =
+            std::bit_floor(std::max({large_step / replicates(), iteration.points / 8, std::uint64_t{1}}));
         const std::uint64_t start = std::max(first_points, iteration.length / iteration_growth);
         const std::uint64_t wanted = std::min(iteration.points == 0 ? start : iteration.points, large);
         // At the end of the budget the largest power of two that fits; a small remainder is not used.
@@ -130,31 +128,44 @@ class SobolVegas final : public VegasEstimator {
 
     std::optional<ReplicatePass> sample(const VegasState& next, std::uint32_t stream, std::uint64_t first,
                                         std::uint64_t points, bool training, const CancelFlag* cancel) const {
-        const std::uint64_t runs = (points + vegas_task_points - 1) / vegas_task_points;
         if (device_) {
             use_map(next.map);
             device_->set_replicates(problem_.seed, stream * 1024, settings_.replicates);
-            device_->draw_sobol(first, points);
         }
-        return parallel_reduce_ordered(
-            static_cast<std::int64_t>(runs * replicates()),
-            [&](std::int64_t t) {
-                const auto replicate = static_cast<std::uint64_t>(t) / runs;
-                const std::uint64_t begin = static_cast<std::uint64_t>(t) % runs * vegas_task_points;
-                return run(next, stream, static_cast<int>(replicate), first + begin,
-                           std::min(vegas_task_points, points - begin), replicate * points + begin,
-                           points * replicates(), training);
-            },
-            [](ReplicatePass a, const ReplicatePass& b) {
-                a.merge(b);
-                return a;
-            },
-            cancel);
+        // A power of two, so that the points of a batch lie in one block, or are whole blocks.
+        const std::uint64_t size = device_ ? std::bit_floor(device_->block_of_each(replicates())) : points;
+        std::optional<ReplicatePass> all;
+        for (std::uint64_t done = 0; done < points; done += size) {
+            const std::uint64_t each = std::min(size, points - done);
+            const std::uint64_t runs = (each + vegas_task_points - 1) / vegas_task_points;
+            if (device_) device_->draw_sobol(first + done, each);
+            auto pass = parallel_reduce_ordered(
+                static_cast<std::int64_t>(runs * replicates()),
+                [&](std::int64_t t) {
+                    const auto replicate = static_cast<std::uint64_t>(t) / runs;
+                    const std::uint64_t begin = static_cast<std::uint64_t>(t) % runs * vegas_task_points;
+                    return run(next, stream, static_cast<int>(replicate), first, done + begin,
+                               std::min(vegas_task_points, each - begin), replicate * each + begin,
+                               points * replicates(), training);
+                },
+                [](ReplicatePass a, const ReplicatePass& b) {
+                    a.merge(b);
+                    return a;
+                },
+                cancel);
+            if (!pass) return std::nullopt;
+            if (all)
+                all->merge(*pass);
+            else
+                all = std::move(pass);
+        }
+        return all;
     }
 
+    // `count` points from number `begin` of a step on, whose first point is `first` of the replicate's sequence.
     ReplicatePass run(const VegasState& next, std::uint32_t stream, int replicate, std::uint64_t first,
-                      std::uint64_t count, std::uint64_t number, std::uint64_t all_points,
-                      bool training) const {
+                      std::uint64_t begin, std::uint64_t count, std::uint64_t number,
+                      std::uint64_t all_points, bool training) const {
         const Evaluator& g = problem_.evaluator;
         ReplicatePass pass{ReplicateSums(settings_.replicates, g.components()), MapInsight(g.components())};
         pass.insight.tail = next.tail.empty();
@@ -169,10 +180,10 @@ class SobolVegas final : public VegasEstimator {
         std::vector<double> weighted(batch_size);
         for (std::uint64_t done = 0; done < count; done += batch_size) {
             const std::size_t n = std::min<std::uint64_t>(batch_size, count - done);
-            const bool trains_map =
-                training && settings_.alpha > 0 &&
-                trains(stream * 1024 + static_cast<std::uint64_t>(replicate), first + done, all_points);
-            const auto fill = [&](PointBuffer& to) { sobol.fill(to, first + done); };
+            const bool trains_map = training && settings_.alpha > 0 &&
+                                    trains(stream * 1024 + static_cast<std::uint64_t>(replicate),
+                                           first + (begin + done) / batch_size * batch_size, all_points);
+            const auto fill = [&](PointBuffer& to) { sobol.fill(to, first + begin + done); };
             y.resize(n, g.dimensions());
             if (!device_ || trains_map) fill(y);
             if (device_)

@@ -2,6 +2,7 @@
 #include "test/mc/integrate/estimator_checks.h"
 #include "test/mc/integrate/integrate_testing.h"
 #include "test/mc/integrate/on_emulated_device.h"
+#include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
@@ -87,6 +88,14 @@ TEST_F(MixtureOnEmulatedDevice, SumsHaveTheProcessorsBits) {
         EXPECT_EQ(a->channels[k].sum, b->channels[k].sum);
         EXPECT_EQ(a->channels[k].squares, b->channels[k].squares);
     }
+}
+
+TEST_F(MixtureOnEmulatedDevice, CompilingCountsForNoTimeLimit) {
+    const Integrand there = integrand("double integrand(int, const double* x) { return x[0]; }", 2);
+    const IntegrationResult r = integrate(there, Domain::unit_cube(2), Adaptive{},
+                                          {.time = std::chrono::milliseconds(100)}); // compilers take longer
+    EXPECT_GT(r.evaluations, 0u);
+    EXPECT_NEAR(r.value[0], 0.5, 0.1);
 }
 
 struct DrawnIntegrand {
