@@ -140,7 +140,8 @@ class CudaDevice final : public Device {
         visit.check();
         CudaDriver::Pointer memory = 0;
         check_memory(cuda_->driver.allocate(&memory, bytes), bytes, "the GPU");
-        return reinterpret_cast<void*>(static_cast<std::uintptr_t>(memory));
+        // The driver's addresses are integers.
+        return reinterpret_cast<void*>(std::uintptr_t{memory}); // NOLINT(performance-no-int-to-ptr)
     }
     void release(void* memory) noexcept override {
         if (const CudaContextOwner::Visit visit(*cuda_); visit.entered())

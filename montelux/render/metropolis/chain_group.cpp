@@ -50,6 +50,7 @@ void ChainGroup::take_starting_points(std::size_t task, RayTracer& tracer) {
     PrimarySampler::Memory memory;
     std::vector<PrimarySamples> samples(together, PrimarySamples(PhiloxStream(0)));
     std::vector<PrimarySamples*> states;
+    states.reserve(samples.size());
     for (PrimarySamples& s : samples) states.push_back(&s);
     std::vector<PrimarySample> results(together);
     const std::uint64_t begin = task * points_per_task;
