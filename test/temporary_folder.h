@@ -1,11 +1,11 @@
 // TemporaryFolder: a folder of one test, removed at its end; tests run in parallel and must not share files.
 #pragma once
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
-#include <stdlib.h>
 #include <string>
 #include <system_error>
 
