@@ -59,13 +59,14 @@ inline Agreement agreement_in(const AgreementCase& c, std::size_t number, std::u
                         render_of_seeds(d, c.method, (c.method == by_light ? 96 : 48) * more));
 }
 
-// Pooled over all cases, the pixels differ by as much as their errors say.
+// Pooled over cases with names, the pixels differ by as much as their errors say; `agreement` of a case and its number.
 // Heavy tails, of caustics with few samples, widen the differences a little: `most_ratio`.
-inline void expect_agreement_of(const std::vector<AgreementCase>& cases, double most_error = 0.03,
-                                double most_ratio = 1.1) {
+template <typename Case, typename AgreementOf>
+void expect_pooled_agreement(const std::vector<Case>& cases, const AgreementOf& agreement, double most_error,
+                             double most_ratio) {
     double squares = 0, pixels = 0;
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        const Agreement r = agreement_in(cases[i], i, 1);
+        const Agreement r = agreement(cases[i], i);
         EXPECT_LT(r.sigmas, 7) << cases[i].name << ": " << 100 * r.bias << " %";
         EXPECT_LT(r.error, most_error) << cases[i].name;
         squares += r.squares;
@@ -73,6 +74,13 @@ inline void expect_agreement_of(const std::vector<AgreementCase>& cases, double 
     }
     EXPECT_GT(std::sqrt(squares / pixels), 0.9);
     EXPECT_LT(std::sqrt(squares / pixels), most_ratio);
+}
+
+inline void expect_agreement_of(const std::vector<AgreementCase>& cases, double most_error = 0.03,
+                                double most_ratio = 1.1) {
+    expect_pooled_agreement(
+        cases, [](const AgreementCase& c, std::size_t i) { return agreement_in(c, i, 1); }, most_error,
+        most_ratio);
 }
 
 } // namespace montelux::testing

@@ -144,24 +144,20 @@ struct Case {
     std::uint32_t samples = 64; // per pixel and seed, of either method
 };
 
-// Pooled over the cases, as expect_agreement_of: against `reference`, without manifold sampling.
+// Against `reference`, without manifold sampling.
 void expect_sampling_agrees(const std::vector<Case>& cases, IntegratorKind reference, double most_error,
                             double most_ratio) {
-    double squares = 0, pixels = 0;
-    for (std::size_t i = 0; i < cases.size(); ++i) {
-        SceneDescription plain = cases[i].scene.description;
-        plain.sampler.seed = 3000 + 1000 * i;
-        SceneDescription d = sampled(cases[i].scene);
-        d.sampler.seed = 90'000 + 1000 * i;
-        const Agreement r = agreement_of(render_of_seeds(plain, reference, cases[i].samples),
-                                         render_of_seeds(d, IntegratorKind::path, cases[i].samples));
-        EXPECT_LT(r.sigmas, 7) << cases[i].name << ": " << 100 * r.bias << " %";
-        EXPECT_LT(r.error, most_error) << cases[i].name;
-        squares += r.squares;
-        pixels += r.pixels;
-    }
-    EXPECT_GT(std::sqrt(squares / pixels), 0.9);
-    EXPECT_LT(std::sqrt(squares / pixels), most_ratio);
+    expect_pooled_agreement(
+        cases,
+        [&](const Case& c, std::size_t i) {
+            SceneDescription plain = c.scene.description;
+            plain.sampler.seed = 3000 + 1000 * i;
+            SceneDescription d = sampled(c.scene);
+            d.sampler.seed = 90'000 + 1000 * i;
+            return agreement_of(render_of_seeds(plain, reference, c.samples),
+                                render_of_seeds(d, IntegratorKind::path, c.samples));
+        },
+        most_error, most_ratio);
 }
 
 // Lamps that scattering finds as well. Nothing is counted twice or left out.

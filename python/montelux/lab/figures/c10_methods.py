@@ -60,7 +60,7 @@ def ratio(name, a, b, together):  # type: ignore[no-untyped-def]
 
 
 def methods(seconds: float = SECONDS) -> Outcome:
-    """Renders by each method in the same CPU time; their errors as measured against longer ones, and as they tell."""
+    """Renders by each method in the same CPU time; their errors as measured against longer ones, and as they claim."""
     n = samples_for("bidirectional", 3 * seconds)
     long = [rendered_by("bidirectional", n, 100 + i) for i in range(RENDERS)]
     reference = np.mean([luminance(r.mean) for r in long], axis=0)
@@ -72,20 +72,20 @@ def methods(seconds: float = SECONDS) -> Outcome:
     for way in WAYS:
         n = samples_for(way, seconds)
         renders = [rendered_by(way, n, 1 + i) for i in range(RENDERS)]
-        pictures, told = (
+        pictures, claimed = (
             np.array([luminance(p) for p in part]) for part in zip(*((r.mean, r.standard_error) for r in renders))
         )
         found[way] = {
             "measured": (((pictures - reference) ** 2 - noise) * scale)[:, known].mean(axis=1),  # less the reference's
-            "told": (told**2 * scale)[:, known].mean(axis=1),
+            "claimed": (claimed**2 * scale)[:, known].mean(axis=1),
             "picture": renders[0].mean,
             "error": np.abs(pictures[0] - reference) * np.sqrt(scale),
             "spp": n,
             "seconds": np.mean([r.cpu_seconds for r in renders]),
         }
         numbers.append(ratio(f"{way}: mean over the reference", pictures.mean(axis=(1, 2)), means, False))
-        if way != "merging":  # whose bias no render tells
-            numbers.append(ratio(f"{way}: told over measured", found[way]["told"], found[way]["measured"], True))
+        if way != "merging":  # its standard errors leave out the bias
+            numbers.append(ratio(f"{way}: claimed over measured", found[way]["claimed"], found[way]["measured"], True))
     return Outcome(numbers, {"found": found, "reference": reference})
 
 
@@ -104,11 +104,11 @@ def draw_methods(figure: matplotlib.figure.Figure, theme: Theme, s: dict[str, An
     axes[1, 0].set_ylabel("error", fontsize="small")
     a = bottom.subplots()
     grid(a, theme)
-    for name, marker, color, shift in (("measured", "o", theme.blue, -0.08), ("told", "s", theme.orange, 0.08)):
-        v = np.array([f["measured" if name == "measured" else "told"] for f in found.values()])
+    for name, marker, color, shift in (("measured", "o", theme.blue, -0.08), ("claimed", "s", theme.orange, 0.08)):
+        v = np.array([f[name] for f in found.values()])
         mean, error = v.mean(axis=1), v.std(axis=1, ddof=1) / np.sqrt(v.shape[1])
         x = np.arange(len(found)) + shift
-        label = "measured against the reference" if name == "measured" else "as the renders tell it"
+        label = "measured against the reference" if name == "measured" else "as the renders claim"
         a.errorbar(x, mean, error, fmt=marker, color=color, capsize=5, elinewidth=2, label=label)
     a.set(yscale="log", ylabel="squared error", xlim=(-0.5, len(found) - 0.5), title="")
     a.set_xticks(range(len(found)), list(found))
@@ -122,7 +122,7 @@ FIGURES = (
         "One room by five methods in the same time",
         "The lamps stand in shades, so most light comes by a detour that path tracing seldom finds. Light paths that are"
         " joined to those of the camera find it at once; a guide and Metropolis chains pay in longer renders than these,"
-        " half a second of CPU time each. What the renders tell about their own error (squares) agrees with what is measured"
+        " half a second of CPU time each. The errors that the renders claim (squares) agree with those measured"
         " against longer ones (circles), even where they are noise, but for the bias of merging. Bars are standard errors"
         " over 16 seeds; the number of samples (spp: per pixel) follows from the speed of the machine.",
         (r"\mathrm{squared\ error} = \frac{1}{P} \sum_{p=1}^{P} \frac{(\bar{L}_p - L_p)^2}{(L_p + \epsilon)^2}",),
