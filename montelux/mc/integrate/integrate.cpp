@@ -12,6 +12,7 @@
 
 #include "montelux/mc/integrate/integrand_scale.h"
 #include "montelux/mc/integrate/integrate_log.h"
+#include "montelux/mc/integrate/integration_request.h"
 #include "montelux/mc/integrate/interruptible.h"
 #include "montelux/mc/integrate/iteration_history.h"
 #include "montelux/mc/integrate/problem_fingerprint.h"
@@ -27,14 +28,6 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t default_evaluations = 1'000'000;
 constexpr std::uint64_t no_limit = ~std::uint64_t{0};
-
-void check_error(const char* what, double error) {
-    if (error >= 0 && std::isfinite(error)) return;
-    std::ostringstream text;
-    text << "the " << what << " error asked for is " << error
-         << "; expected a finite number that is not negative";
-    throw Error("integrate", text.str());
-}
 
 std::string point_text(const std::vector<double>& point) {
     std::ostringstream text;
@@ -66,13 +59,7 @@ class Run {
           evaluator_(scaled(f_, scale_), domain, options.non_finite), budget_(budget), options_(options),
           make_estimator_(method), method_(method.name()),
           targeted_(budget.relative_error > 0 || budget.absolute_error > 0) {
-        check_error("relative", budget.relative_error);
-        check_error("absolute", budget.absolute_error);
-        if (!(budget.time.count() >= 0)) throw Error("integrate", "expected a time that is not negative");
-        if (options.threads < 0)
-            throw Error("integrate", "expected a number of threads that is not negative");
-        if (options.resume && options.checkpoint.empty())
-            throw Error("integrate", "resume was asked for without a checkpoint file to resume from");
+        check_request(budget, options);
         limit_ = budget.evaluations > 0    ? budget.evaluations
                  : targeted_ || has_time() ? no_limit
                                            : default_evaluations;
