@@ -224,7 +224,7 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
                         denoised.c_str());
         if (const std::string notice = merging_notice(result, target); !notice.empty())
             std::printf("%s\n", notice.c_str());
-        if (const std::string warning = merging_memory_warning(report.merging); !warning.empty())
+        if (const std::string warning = merging_warning(report.merging); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = manifold_warning(session->renderer()); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());

@@ -73,9 +73,6 @@ void MergingPasses::plan() {
         }
         traced += paths;
     }
-    if (!(sum > 0))
-        throw Error("merging", "no light path reaches a surface that is no mirror or smooth glass by way of "
-                               "another surface: nothing can merge; leave merging out");
     // With four standard errors of the mean of the parts.
     const double mean = sum / parts,
                  error =
@@ -149,7 +146,7 @@ void MergingPasses::prepare(std::uint64_t index, RenderReport& report, std::mute
     summary.last_radius = map->radius();
     summary.light_paths = paths_;
     summary.of_paths = pixels_;
-    summary.bytes = std::max<std::uint64_t>(summary.bytes, map->bytes());
+    if (!map->empty()) summary.bytes = std::max<std::uint64_t>(summary.bytes, map->bytes());
     context_.set_light_map(std::move(map));
     prepared_ = index;
 }

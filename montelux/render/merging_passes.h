@@ -21,7 +21,7 @@ namespace montelux {
 // Approach"; Kaplanyan, Dachsbacher 2013, "Adaptive Progressive Photon Mapping").
 class MergingPasses {
   public:
-    // The context and the accelerator must outlive it. Throws Error where nothing can merge.
+    // The context and the accelerator must outlive it. Throws Error where the radius does not suit the scene.
     MergingPasses(SampleContext& context, const Accelerator& accelerator, const MergingSettings& settings,
                   const PixelBounds& crop);
 

@@ -9,7 +9,7 @@ namespace montelux {
 struct MergingSummary {
     double first_radius = 0, last_radius = 0;    // of passes, in units of the scene
     std::uint64_t light_paths = 0, of_paths = 0; // in the map of a pass; light paths of the pass
-    std::uint64_t bytes = 0;                     // of the largest map
+    std::uint64_t bytes = 0;                     // of the largest map; 0 if all were empty
     // MergingBias::Estimate, in units of luminance, from so many passes; unknown below two.
     double bias = 0, bias_error = 0, bias_rms = 0;
     std::uint64_t passes = 0;

@@ -53,7 +53,7 @@ std::string chain_warning(const ChainStatistics& chains) {
 
 std::string merging_notice(const RenderSnapshot& result, const RenderTarget& target) {
     const MergingSummary& m = result.report.merging;
-    if (!(m.first_radius > 0)) return {};
+    if (!(m.first_radius > 0) || m.bytes == 0) return {};
     char text[240];
     std::snprintf(text, sizeof text,
                   "consistent, not unbiased: light within %.3g to %.3g of a point counts as at it; ",
@@ -73,7 +73,11 @@ std::string merging_notice(const RenderSnapshot& result, const RenderTarget& tar
            (target.error > 0 ? "; the target error covers noise alone" : "; the errors cover noise alone");
 }
 
-std::string merging_memory_warning(const MergingSummary& m) {
+std::string merging_warning(const MergingSummary& m) {
+    if (m.first_radius > 0 && m.bytes == 0)
+        return "merging has no effect: no light path reached a surface that is no mirror or smooth glass by "
+               "way "
+               "of another surface";
     if (m.light_paths >= m.of_paths) return {};
     char text[200];
     std::snprintf(text, sizeof text,

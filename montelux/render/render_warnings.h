@@ -16,8 +16,8 @@ std::string chain_warning(const ChainStatistics& chains);
 // Of a render whose paths merged: that its picture is consistent, not unbiased, and how large the bias is; empty for
 // others.
 std::string merging_notice(const RenderSnapshot& result, const RenderTarget& target);
-// That its light paths did not fit into the memory; empty if they did.
-std::string merging_memory_warning(const MergingSummary& merging);
+// That nothing merged, or that its light paths did not fit into the memory; empty otherwise.
+std::string merging_warning(const MergingSummary& merging);
 
 // That manifold sampling finds no caster or no light to sample; empty if it does, or is off.
 std::string manifold_warning(const Renderer& renderer);

@@ -64,6 +64,7 @@ class LightMap {
     double area_paths() const { return area_paths_; }
     std::span<const LightPaths> parts() const { return parts_; }
     std::size_t bytes() const;
+    bool empty() const { return entries_.empty(); } // nothing merges
     // Of a map, per mergeable vertex beside LightPaths::bytes().
     static constexpr std::size_t bytes_per_entry = 32;
 

@@ -87,7 +87,7 @@ std::vector<std::string> warnings_of(const RenderJob& job) {
     std::vector<std::string> texts{bad_sample_warning(result.report.bad, session.sampler().seed),
                                    missing_error_warning(result, session.renderer()),
                                    merging_notice(result, session.renderer().target()),
-                                   merging_memory_warning(result.report.merging),
+                                   merging_warning(result.report.merging),
                                    manifold_warning(session.renderer()),
                                    session.checkpoint_failure(),
                                    result.denoise_failure};

@@ -5,8 +5,10 @@ if ! command -v script >/dev/null || ! command -v stty >/dev/null; then
     echo "skipped: there is no 'script' or no 'stty'"
     exit 77
 fi
-scene lit "$sky LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 0.9 1.2] Material \"diffuse\"
-Shape \"sphere\" Translate 1 0 0 Shape \"sphere\"" 1200 900
+content="$sky LightSource \"point\" \"rgb I\" [9 9 9] \"point3 from\" [0 0.9 1.2] Material \"diffuse\"
+Shape \"sphere\" Translate 1 0 0 Shape \"sphere\""
+scene lit "$content" 480 360
+scene large "$content" 1200 900
 
 # on_terminal COLUMNS arguments...: `lines` has what was drawn, a picture of the line each.
 on_terminal() {
@@ -37,7 +39,7 @@ on_terminal 40 render lit.pbrt --spp 8 -o x.exr
 grep -q 'elapsed\|left' lines || fail "no time on 40 columns: $(cat lines)"
 
 # Interrupted in its pilot, a render to an error has seen every pixel.
-"$montelux" render lit.pbrt --target-error 0.1% -o early.exr >out 2>&1 </dev/null &
+"$montelux" render large.pbrt --target-error 0.1% -o early.exr >out 2>&1 </dev/null &
 pid=$!
 sleep 5
 kill -INT $pid

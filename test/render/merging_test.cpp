@@ -14,6 +14,7 @@
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/merging_bias.h"
 #include "montelux/render/render_session.h"
+#include "montelux/render/render_warnings.h"
 #include "montelux/render/splat_pass.h"
 
 namespace montelux::testing {
@@ -360,17 +361,34 @@ TEST(MergingPictures, RefusesWhatItCannotDo) {
     expect_refused([](auto& d) { d.integrator.merging->radius = 1e-9f; }, "too small");
     expect_refused([](auto& d) { d.integrator.merging->radius = 100; }, "too large");
     expect_refused([](auto& d) { d.integrator.merging->memory = 0; }, "memory");
-    expect_refused([](auto& d) { d.integrator.max_depth = 1; }, "nothing can merge");
-    expect_refused(
-        [](auto& d) {
-            for (Material& m : d.scene.materials)
-                m = ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(3)}, .roughness = alpha_of(0)};
-        },
-        "nothing can merge");
-    SceneBuilder dark = lit_corner();
-    dark.description.integrator = room.description.integrator;
-    EXPECT_NE(refusal_of(dark.description).find("nothing can merge"), std::string::npos);
     EXPECT_NE(refusal_of(room.description, {.adaptive = true}).find("--adaptive"), std::string::npos);
+}
+
+// Frames of an animation may be dark, or show mirrors alone.
+TEST(MergingPictures, WhereNothingMergesAWarningSaysSo) {
+    SceneBuilder shallow = merging_room(8, 8), mirrors = merging_room(8, 8), dark;
+    shallow.description.integrator.max_depth = 1;
+    for (Material& m : mirrors.description.scene.materials)
+        m = ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(3)}, .roughness = alpha_of(0)};
+    dark.description = shallow.description;
+    dark.description.scene = {};
+    dark.add_mesh(square(), dark.add(DiffuseMaterial{gray(0.5f)}));
+    for (SceneBuilder* b : {&shallow, &mirrors, &dark}) {
+        b->description.sampler.spp = 2;
+        RenderState state(b->description);
+        Renderer(b->description).render(state);
+        EXPECT_NE(merging_warning(state.report.merging).find("no effect"), std::string::npos);
+        RenderSnapshot result;
+        result.report = state.report;
+        EXPECT_EQ(merging_notice(result, {}), "");
+        const bool lit = picture_mean(state.film).mean > 0;
+        EXPECT_EQ(lit, b != &dark);
+    }
+    SceneBuilder room = merging_room(8, 8);
+    room.description.sampler.spp = 2;
+    RenderState state(room.description);
+    Renderer(room.description).render(state);
+    EXPECT_EQ(merging_warning(state.report.merging), "");
 }
 
 } // namespace
