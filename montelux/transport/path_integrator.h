@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "montelux/scene/render_settings.h"
 #include "montelux/transport/guiding/guiding_field.h"
@@ -45,7 +46,8 @@ class PathIntegrator {
     // by scattering. They must outlive the paths. Not with a guide.
     void set_casters(const Casters* casters) { casters_ = casters; }
 
-    // `record`, if given, receives the path vertex by vertex; the radiance is the same to the last bit.
+    // `record`, if given, receives the path vertex by vertex; the radiance is the same to the last bit. Not with a
+    // guide, which makes samples trees of paths.
     template <RandomStream Stream>
     FilmContribution estimate(const SceneView& scene, RayTracer& tracer, const CameraSample& camera,
                               Stream& stream, PathRecord* record = nullptr) const;
@@ -58,10 +60,11 @@ class PathIntegrator {
                   PathBatch& batch, std::span<FilmContribution> results) const;
 
     // The state's ray hit a surface: adds emission, and scatters. The caller traces the shadow ray, if any,
-    // before reading the radiance.
+    // before reading the radiance. With a guide the path may be split: `begun`, unless null, gets its other branches.
     template <RandomStream Stream>
     std::optional<ShadowRay> shade(const SceneView& scene, PathState& state, const Hit& hit, Stream& stream,
-                                   PathRecorder recorder = PathRecorder(nullptr)) const;
+                                   PathRecorder recorder = PathRecorder(nullptr),
+                                   std::vector<PathBranch>* begun = nullptr) const;
     // The state's ray left the scene: adds infinite lights, and ends the path.
     void escape(const SceneView& scene, PathState& state,
                 PathRecorder recorder = PathRecorder(nullptr)) const;
@@ -70,6 +73,10 @@ class PathIntegrator {
     template <RandomStream Stream>
     struct Vertex;
 
+    // Light sampling and the direction in which a path, or a branch of it, continues from a vertex.
+    template <RandomStream Stream>
+    void scatter(const Vertex<Stream>& vertex, const SurfacePoint& s, const Hit& hit,
+                 const SurfaceBsdf& surface, std::optional<ShadowRay>& shadow) const;
     // `shade` of several hits that have at least this level; empties the group.
     template <int W>
     void shade_diffuse(const SceneView& scene, LaneShading level, HitGroup<W>& group, PathBatch& batch) const;

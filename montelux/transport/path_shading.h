@@ -2,7 +2,9 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <vector>
 
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/material/soft_terminator.h"
@@ -140,7 +142,8 @@ struct PathIntegrator::Vertex {
 
 template <RandomStream Stream>
 std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState& state, const Hit& hit,
-                                               Stream& stream, PathRecorder recorder) const {
+                                               Stream& stream, PathRecorder recorder,
+                                               std::vector<PathBranch>* begun) const {
     std::optional<ShadowRay> shadow; // returned by every return statement: built in place
     const Vec3f w = state.ray.d;
     const Index material = scene.shapes[hit.shape].material;
@@ -161,9 +164,12 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
 
     const TextureContext context = textured ? texture_context(s) : TextureContext();
     const bool widen = settings_.regularize && state.scattered_roughly;
+    const bool may_narrow = state.keeps_spectrum && !state.lambda.secondary_terminated();
     SurfaceBsdf surface = make_bsdf(scene, s, -w, context, state.lambda, widen);
     if (scene.soft_terminator) [[unlikely]]
         soften_terminator(scene, state.ray, hit, context, state.lambda, s, surface, widen);
+    if (may_narrow && state.lambda.secondary_terminated()) [[unlikely]]
+        state.throughput = SampledSpectrum(4 * state.throughput[0], 0, 0, 0);
     const Vec3f wo = surface.frame.to_local(-w);
     if (recorder) recorder.made_bsdf(surface, wo);
     if (state.depth == 1)
@@ -185,6 +191,25 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     if (guides && state.trace != nullptr) [[unlikely]]
         state.trace->begin(s.p, facing, state.throughput, state.radiance);
     if (region != nullptr && !vertex.is_worth_going_on()) return shadow;
+    if constexpr (std::same_as<Stream, SampleStream>)
+        if (region != nullptr && begun != nullptr && state.trace == nullptr) {
+            const int count = guided_branches(*region, state.throughput, state.branches, state.expected);
+            if (count > 1) state.split(count);
+            for (int i = 1; i < count; ++i) {
+                PathBranch& b = begun->emplace_back(PathBranch{state, stream.branch(i), std::nullopt});
+                b.state.radiance = {};
+                scatter(Vertex<Stream>{*this, scene, b.state, b.stream, recorder, surface.frame, wo, region},
+                        s, hit, surface, b.shadow);
+            }
+        }
+    scatter(vertex, s, hit, surface, shadow);
+    return shadow;
+}
+
+template <RandomStream Stream>
+void PathIntegrator::scatter(const Vertex<Stream>& vertex, const SurfacePoint& s, const Hit& hit,
+                             const SurfaceBsdf& surface, std::optional<ShadowRay>& shadow) const {
+    PathState& state = vertex.state;
     const std::optional<BsdfSample> scattered = std::visit(
         [&](const BsdfModel auto& bsdf) {
             if (!bsdf.is_specular()) vertex.sample_light(bsdf, shadow);
@@ -192,8 +217,8 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
         },
         surface.bsdf);
     if (!scattered) {
-        if (recorder) recorder.ended(PathEnd::no_direction);
-        return shadow;
+        if (vertex.recorder) vertex.recorder.ended(PathEnd::no_direction);
+        return;
     }
     state.throughput *= scattered->weight;
     state.bsdf_pdf = scattered->pdf;
@@ -207,12 +232,11 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     if (!scattered->specular) state.scattered_roughly = true;
     if (scattered->transmission) state.eta_scale *= scattered->eta * scattered->eta;
     const Vec3f wi = surface.frame.to_world(scattered->wi);
-    if (recorder) recorder.scattered({*scattered, wi});
+    if (vertex.recorder) vertex.recorder.scattered({*scattered, wi});
     state.ray.o = offset_origin(s.p, s.ng, s.error, wi);
     state.ray.d = wi;
     state.ray.t_max = std::numeric_limits<float>::infinity();
     state.alive = vertex.survives();
-    return shadow;
 }
 
 template <RandomStream Stream>
@@ -227,6 +251,15 @@ template <RandomStream Stream>
 FilmContribution PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer,
                                           const CameraSample& camera, Stream& stream,
                                           PathRecord* record) const {
+    if constexpr (std::same_as<Stream, SampleStream>)
+        if (guide_ != nullptr) { // several branches
+            PathBatch batch;
+            std::array starts{PathStart<Stream>{camera, stream}};
+            std::array<FilmContribution, 1> result;
+            estimate(scene, tracer, std::span<PathStart<Stream>>(starts), batch, result);
+            stream = starts[0].stream;
+            return result[0];
+        }
     const PathRecorder recorder(record);
     PathState state(camera);
     while (state.alive) {
@@ -259,6 +292,14 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
     constexpr bool in_lanes = std::same_as<Stream, SampleStream>;
     const bool in_plain_lanes =
         settings_.strategy != Strategy::uniform && guide_ == nullptr && casters_ == nullptr;
+    const auto sample_of = [&](Index i) {
+        return i < starts.size() ? i : batch.origins[i - starts.size()].sample;
+    };
+    const auto stream_of = [&](Index i) -> Stream& {
+        if constexpr (std::same_as<Stream, SampleStream>)
+            if (i >= starts.size()) return batch.origins[i - starts.size()].stream;
+        return starts[i].stream;
+    };
     HitGroup<native_lanes> groups[2];
     constexpr std::array levels{LaneShading::all, LaneShading::scattering};
     while (!batch.alive.empty()) {
@@ -269,7 +310,7 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
         if (casters_ != nullptr) [[unlikely]]
             for (std::size_t k = 0; k < batch.alive.size(); ++k)
                 if (const Index i = batch.alive[k]; batch.hits[k].shape != no_index)
-                    add_light_of_casters(scene, tracer, batch.states[i], batch.hits[k], starts[i].stream);
+                    add_light_of_casters(scene, tracer, batch.states[i], batch.hits[k], stream_of(i));
 
         batch.shadows.clear();
         batch.shadow_owners.clear();
@@ -282,26 +323,32 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
                 continue;
             }
             if constexpr (in_lanes) {
-                const LaneShading level = in_plain_lanes && starts[i].camera.trace == nullptr
+                const LaneShading level = in_plain_lanes && batch.states[i].trace == nullptr
                                               ? lane_shading(scene, hit)
                                               : LaneShading::none;
                 if (level != LaneShading::none) {
                     HitGroup<native_lanes>& group = groups[level == LaneShading::all ? 0 : 1];
-                    group.add(i, state, hit, starts[i].stream);
+                    group.add(i, state, hit, stream_of(i));
                     if (group.full()) shade_diffuse(scene, level, group, batch);
                     continue;
                 }
             }
-            const auto shading = [&] { return shade(scene, state, hit, starts[i].stream); };
+            const std::size_t begun = batch.begun.size();
+            const auto shading = [&] {
+                return shade(scene, state, hit, stream_of(i), PathRecorder(nullptr), &batch.begun);
+            };
             if (batch.shadows.emplace_back(InPlace(shading)))
                 batch.shadow_owners.push_back(i);
             else
                 batch.shadows.pop_back();
+            for (PathBranch& b : std::span(batch.begun).subspan(begun)) b.sample = sample_of(i);
         }
         if constexpr (in_lanes)
             for (std::size_t g = 0; g < levels.size(); ++g)
                 if (groups[g].size > 0) shade_diffuse(scene, levels[g], groups[g], batch);
 
+        if (!batch.begun.empty()) [[unlikely]]
+            batch.take_branches();
         batch.rays.clear();
         for (const std::optional<ShadowRay>& shadow : batch.shadows) batch.rays.push_back(&shadow->ray);
         const std::span<bool> occluded(batch.occluded.get(), batch.rays.size());
@@ -312,9 +359,13 @@ void PathIntegrator::estimate(const SceneView& scene, RayTracer& tracer, std::sp
                                                          batch.shadows[k]->light);
         std::erase_if(batch.alive, [&](Index i) { return !batch.states[i].alive; });
     }
+    // In the order in which a sample's branches began, which does not depend on other samples.
+    for (std::size_t i = 0; i < batch.origins.size(); ++i)
+        batch.states[batch.origins[i].sample].radiance += batch.states[starts.size() + i].radiance;
     for (std::size_t i = 0; i < starts.size(); ++i) {
         const PathState& state = batch.states[i];
-        results[i] = {state.radiance, state.lambda, state.first, state.transparency};
+        results[i] = {state.radiance, state.keeps_spectrum ? starts[i].camera.lambda : state.lambda,
+                      state.first, state.transparency};
     }
 }
 

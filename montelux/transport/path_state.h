@@ -15,6 +15,9 @@ enum class ManifoldChain : std::uint8_t {
     joined, // ... and then at a caster: the light is counted already
 };
 
+// A path that a guide splits continues as several branches; these bound the work of a sample.
+inline constexpr int most_branches_at_vertex = 4, most_branches_of_sample = 64;
+
 struct PathState {
     Ray ray;                   // to be traced next
     SampledWavelengths lambda; // may lose its secondary wavelengths
@@ -28,10 +31,13 @@ struct PathState {
     ManifoldChain chain = ManifoldChain::none;
     bool alive = true; // false: the path has ended; do not trace the ray
     FirstHit first;
-    float transparency = 0;         // as in FilmContribution
-    SampleExtras* extras = nullptr; // null: not wanted
-    GuidingTrace* trace = nullptr;  // null: no guide learns from the path
-    float expected = 0;             // GuidingField::expected
+    float transparency = 0;                 // as in FilmContribution
+    SampleExtras* extras = nullptr;         // null: not wanted
+    GuidingTrace* trace = nullptr;          // null: no guide learns from the path
+    float expected = 0;                     // GuidingField::expected
+    int branches = most_branches_of_sample; // that the path may still become
+    // The path has been split: its radiance stays at the wavelengths of the camera ray, whatever `lambda` loses.
+    bool keeps_spectrum = false;
 
     PathState(const CameraSample& camera)
         : ray(camera.ray), lambda(camera.lambda), extras(camera.extras), trace(camera.trace),
@@ -51,9 +57,15 @@ struct PathState {
     }
     void leave(SampledSpectrum carried) {
         if (depth > 0) return;
-        transparency = average(carried);
+        transparency += average(carried);
         if (extras != nullptr) [[unlikely]]
             extras->transparency = transparency;
+    }
+    // The path is one of `count` branches.
+    void split(int count) {
+        throughput /= static_cast<float>(count);
+        branches /= count;
+        keeps_spectrum = keeps_spectrum || !lambda.secondary_terminated();
     }
 };
 static_assert(std::is_trivially_copyable_v<PathState>);

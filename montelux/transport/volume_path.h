@@ -9,8 +9,8 @@
 #include "montelux/transport/guiding/guided_scattering.h"
 #include "montelux/transport/texture_footprint.h"
 #include "montelux/transport/uniform_scattering.h"
+#include "montelux/transport/volume_path_branches.h"
 #include "montelux/transport/volume_path_integrator.h"
-#include "montelux/transport/volume_path_lights.h"
 
 namespace montelux {
 
@@ -18,19 +18,19 @@ namespace montelux {
 // in 500 is longer.
 inline constexpr int most_body_events = 1 << 16;
 
-// One path.
+// One path, or the branches of one.
 template <RandomStream Stream>
-class VolumePath : private VolumePathLights<Stream> {
+class VolumePath : private VolumePathBranches<Stream> {
   public:
     VolumePath(const VolumePathIntegrator& integrator, const SceneView& scene, RayTracer& tracer,
                const CameraSample& camera, Stream& stream, PathRecord* record)
-        : VolumePathLights<Stream>(integrator.settings_, integrator.guide_, scene, tracer, camera, stream,
-                                   record),
+        : VolumePathBranches<Stream>(integrator.settings_, integrator.guide_, scene, tracer, camera, stream,
+                                     record),
           integrator_(integrator) {}
 
     FilmContribution trace() {
         const SampledWavelengths lambda = state_.lambda;
-        while (state_.alive) {
+        while (state_.alive || takes_up_branch()) {
             if (state_.trace != nullptr) [[unlikely]]
                 state_.trace->arrive(state_.radiance);
             Hit hit;
@@ -49,10 +49,16 @@ class VolumePath : private VolumePathLights<Stream> {
 
   private:
     using Lights = VolumePathLights<Stream>;
+    using Branches = VolumePathBranches<Stream>;
+    using Branches::body_events_;
+    using Branches::passages_;
+    using Branches::split;
+    using Branches::takes_up_branch;
     using Lights::add_met_light;
     using Lights::body_at;
     using Lights::guide_;
     using Lights::guide_at;
+    using Lights::is_in_body;
     using Lights::recorder_;
     using Lights::sample_light;
     using Lights::sample_segment;
@@ -176,6 +182,11 @@ class VolumePath : private VolumePathLights<Stream> {
         state_.previous = {p, {}, 0, Vec3f{}};
         const GuidingRegion* const region = in_body ? nullptr : guide_at(p, Facing::medium);
         if (!in_body && !begin_guided(p, Facing::medium, region)) return;
+        split(region, [&] { scatter_in_phase(p, wo, phase, region, in_body); });
+    }
+
+    void scatter_in_phase(Point3f p, Vec3f wo, const PhaseFunction& phase, const GuidingRegion* region,
+                          bool in_body) {
         std::visit(
             [&](const PhaseModel auto& f) {
                 if (!in_body)
@@ -235,13 +246,6 @@ class VolumePath : private VolumePathLights<Stream> {
         return true;
     }
 
-    // What surrounds the ray is the inside of a translucent body.
-    bool is_in_body() const {
-        if (state_.medium == no_index) return false;
-        const auto* medium = std::get_if<HomogeneousMedium>(&scene_.media[state_.medium]);
-        return medium != nullptr && medium->is_body;
-    }
-
     void shade(const Hit& hit) {
         const Vec3f w = state_.ray.d;
         const Index material = scene_.shapes[hit.shape].material;
@@ -294,6 +298,13 @@ class VolumePath : private VolumePathLights<Stream> {
                             !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
         const GuidingRegion* const region = guides ? guide_at(s.p, facing) : nullptr;
         if (guides && !begin_guided(s.p, facing, region)) return;
+        split(region, [&] { continue_from(s, surface, wo, context, region, last); });
+    }
+
+    // From a surface; `last`: unless the path passes it.
+    void continue_from(const SurfacePoint& s, const SurfaceBsdf& surface, Vec3f wo,
+                       const TextureContext& context, const GuidingRegion* region, bool last) {
+        const bool in_body = is_in_body(), may_pass = !settings_.count_passages && !in_body;
         const std::optional<BsdfSample> scattered = std::visit(
             [&](const BsdfModel auto& bsdf) {
                 if (!bsdf.is_specular() && !last)
@@ -309,7 +320,7 @@ class VolumePath : private VolumePathLights<Stream> {
                 if (region != nullptr)
                     return sample_guided(bsdf, surface.frame, wo, *region, stream_, state_.trace);
                 const auto sample = bsdf.sample(wo, TransportMode::radiance, stream_);
-                if (guides && state_.trace != nullptr && sample && !sample->specular) [[unlikely]]
+                if (state_.trace != nullptr && !in_body && !last && sample && !sample->specular) [[unlikely]]
                     state_.trace->scatter(surface.frame.to_world(sample->wi), sample->pdf, sample->pdf, 0);
                 return sample;
             },
@@ -376,8 +387,6 @@ class VolumePath : private VolumePathLights<Stream> {
     }
 
     const VolumePathIntegrator& integrator_;
-    int body_events_ = 0; // inside translucent bodies
-    int passages_ = 0;    // straight ones, not counted, since the last event that was
 };
 
 template <RandomStream Stream>

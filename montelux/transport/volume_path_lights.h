@@ -197,6 +197,13 @@ class VolumePathLights {
                    chosen.light);
     }
 
+    // What surrounds the ray is the inside of a translucent body.
+    bool is_in_body() const {
+        if (state_.medium == no_index) return false;
+        const auto* medium = std::get_if<HomogeneousMedium>(&scene_.media[state_.medium]);
+        return medium != nullptr && medium->is_body;
+    }
+
     // The coefficients of a body below a surface point; those of the path where they do not vary.
     MediumPoint body_at(Index medium, const TextureContext& context) const {
         if (medium == no_index) return state_.body;

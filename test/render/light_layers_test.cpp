@@ -1,4 +1,5 @@
 // Layers of light: direct and indirect light and the groups of lights sum to the mean, and are pictures of their own.
+#include "test/render/hidden_lamp.h"
 #include "test/render/layer_testing.h"
 #include <algorithm>
 #include <cmath>
@@ -55,6 +56,18 @@ TEST(Layers, DirectAndIndirectAndLightGroupsSumToTheMean) {
                     EXPECT_GT(distance_from_mean(image, {group}), 0.1) << group;
                 EXPECT_GT(distance_from_mean(image, {"direct"}), 0.1);
             }
+}
+
+// Each contribution of a path that a guide splits counts once, whichever branches begin after it.
+TEST(Layers, OfGuidedPathsSumToTheMean) {
+    for (SceneBuilder b : {hidden_lamp(12, 0.7f, 1), layered_scene(), foggy_scene()}) {
+        b.description.sampler.spp = 64;
+        b.description.integrator.guiding = Guiding::on;
+        b.description.film.layers.set = {Layer::direct, Layer::indirect};
+        const RenderState state = render_state(b.description);
+        ASSERT_NE(state.guide, nullptr);
+        EXPECT_LT(distance_from_mean(state.film.develop(), {"direct", "indirect"}), 1e-5);
+    }
 }
 
 // Its light belongs to no lamp.

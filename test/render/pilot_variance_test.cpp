@@ -11,18 +11,18 @@
 namespace montelux::testing {
 namespace {
 
-constexpr std::size_t tile_pixels = 64, tiles = 400;
+constexpr std::size_t tile_pixels = 64, pilot_tiles = 400;
 
 std::vector<std::size_t> ends() {
     std::vector<std::size_t> e;
-    for (std::size_t t = 1; t <= tiles; ++t) e.push_back(t * tile_pixels);
+    for (std::size_t t = 1; t <= pilot_tiles; ++t) e.push_back(t * tile_pixels);
     return e;
 }
 
 PilotPart part_of(std::uint64_t seed, const std::function<double(std::size_t tile, PhiloxStream&)>& sample) {
     PilotPart part;
     PhiloxStream stream(seed);
-    for (std::size_t i = 0; i < tiles * tile_pixels; ++i) {
+    for (std::size_t i = 0; i < pilot_tiles * tile_pixels; ++i) {
         part.first.push_back(static_cast<float>(sample(i / tile_pixels, stream)));
         part.second.push_back(static_cast<float>(sample(i / tile_pixels, stream)));
     }
@@ -97,7 +97,7 @@ TEST(PilotVariance, KnowsCorrelatedPixels) {
     const auto shared = [](std::uint64_t seed) {
         PilotPart part;
         PhiloxStream stream(seed);
-        for (std::size_t t = 0; t < tiles; ++t) {
+        for (std::size_t t = 0; t < pilot_tiles; ++t) {
             double a = 0, b = 0;
             for (std::size_t i = 0; i < tile_pixels; ++i) {
                 if (i % 4 == 0) a = double(stream.next_1d()), b = double(stream.next_1d());

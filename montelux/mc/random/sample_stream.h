@@ -129,11 +129,23 @@ class SampleStream {
         return double(u) + 0x1p-24 * double(unit_float(static_cast<std::uint32_t>(below)));
     }
 
+    // Independent numbers for a branch of the sample that begins here: a function of this stream, of how many numbers
+    // were drawn from it, and of `number`.
+    SampleStream branch(std::uint32_t number) const {
+        SampleStream stream = *this;
+        stream.kind_ = SamplerKind::independent;
+        stream.key_ = hash_key(key_, branching, std::uint64_t{number} << 32 | dimension_, index_, z_index_);
+        stream.dimension_ = 0;
+        stream.counter_[0] = 0;
+        return stream;
+    }
+
   private:
     template <int W>
     friend class LaneStream;
 
-    static constexpr std::uint64_t refinement = 0x7265666e; // no other hash of a dimension's key has it
+    static constexpr std::uint64_t branching = 0x6272616e6368; // as `refinement`
+    static constexpr std::uint64_t refinement = 0x7265666e;    // no other hash of a dimension's key has it
     static constexpr std::uint32_t global_dimensions = sobol_nibble_dimensions;
     static constexpr std::uint32_t padded_dimensions = 4;
     static constexpr std::uint32_t halton_dimensions = 128;

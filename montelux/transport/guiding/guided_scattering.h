@@ -9,6 +9,7 @@
 #include "montelux/scene/bsdf/bsdf_model.h"
 #include "montelux/scene/medium/phase_function.h"
 #include "montelux/transport/guiding/guiding_trace.h"
+#include "montelux/transport/path_state.h"
 
 namespace montelux {
 
@@ -65,14 +66,29 @@ GuidedDirection sample_guided(const P& phase, Vec3f wo, const GuidingRegion& reg
     return {wi, pdf, phase_pdf / pdf};
 }
 
-// The probability of Russian roulette by what a path of so much throughput is expected to bring after `depth` events,
-// beside what its pixel expects (0: not known). Vorba and Krivanek 2016, "Adjoint-Driven Russian Roulette and Splitting
-// in Light Transport Simulation".
+// What a path of so much throughput is expected to bring, over what its pixel expects. Russian roulette and splitting
+// keep it near 1: Vorba and Krivanek 2016, "Adjoint-Driven Russian Roulette and Splitting in Light Transport
+// Simulation", with a weight window that is a point.
+inline float expected_share(const GuidingRegion& region, SampledSpectrum throughput, float expected) {
+    return average(throughput) * region.radiance / expected;
+}
+
+// The probability of Russian roulette after `depth` events; `expected` of the pixel, 0: not known.
 inline float guided_survival(const GuidingRegion& region, SampledSpectrum throughput, int depth,
                              float expected) {
     constexpr float least = 0.3f;
     if (depth <= 2 || !(expected > 0)) return 1;
-    return std::min(1.0f, std::max(average(throughput) * region.radiance / expected, least));
+    return std::min(1.0f, std::max(expected_share(region, throughput, expected), least));
+}
+
+// Branches that a path continues with from a vertex where it has survived, by the same: as many as bring what the pixel
+// expects, each with its part of the throughput. Branches share `most`, so that a sample never has more.
+inline int guided_branches(const GuidingRegion& region, SampledSpectrum throughput, int most,
+                           float expected) {
+    if (!(expected > 0)) return 1;
+    const float wanted =
+        std::min(expected_share(region, throughput, expected), float(most_branches_at_vertex));
+    return wanted >= 2 ? std::min(static_cast<int>(wanted), std::max(most, 1)) : 1; // 1 for NaN
 }
 
 } // namespace montelux

@@ -83,6 +83,33 @@ TEST_P(SampleStreamOf, EachNumberAndEachPairOfOneSampleIsUniform) {
     }
 }
 
+// Numbers of a branch and the same ones of another branch, of the sample itself, of a branch that began a number later, of
+// a branch of a branch, and of another sample's. False alarms: 25 tests a kind at 1e-9.
+TEST_P(SampleStreamOf, BranchesAreIndependent) {
+    constexpr int seeds = 20000;
+    std::array<std::array<std::vector<Vec2d>, 5>, 5> pairs;
+    for (int s = 0; s < seeds; ++s) {
+        const auto stream = [&](std::uint32_t x, std::uint64_t index) {
+            SampleStream begun({GetParam(), std::uint64_t(s), 64, 1}, x, 5, index);
+            begun.next_2d();
+            return begun;
+        };
+        const SampleStream sample = stream(17, 21);
+        const SampleStream branch = sample.branch(1), second = sample.branch(2), nested = branch.branch(1);
+        const SampleStream other = stream(17, 22).branch(1), of_pixel = stream(18, 21).branch(1);
+        SampleStream later = sample;
+        later.next_1d();
+        const auto of_branch = draw(branch, 6);
+        const std::array others{draw(second, 6), draw(sample, 6), draw(later.branch(1), 6), draw(nested, 6),
+                                draw(s % 2 == 0 ? other : of_pixel, 6)};
+        for (std::size_t o = 0; o < others.size(); ++o)
+            for (std::size_t d = 0; d < 5; ++d) pairs[o][d].emplace_back(of_branch[d], others[o][d]);
+    }
+    for (std::size_t o = 0; o < pairs.size(); ++o)
+        for (std::size_t d = 0; d < pairs[o].size(); ++d)
+            EXPECT_GT(uniform_square_p_value(pairs[o][d], 16, 12), 1e-9) << o << " " << d;
+}
+
 // Triples see dependences that pairs hide. False alarms: 4 tests a kind at 1e-9.
 TEST_P(SampleStreamOf, TriplesOfOneSampleAreUniform) {
     constexpr int seeds = 50000;

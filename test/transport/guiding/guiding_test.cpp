@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
 #include <map>
 #include <set>
 #include <vector>
@@ -14,6 +15,7 @@
 #include "montelux/scene/bsdf/diffuse.h"
 #include "montelux/transport/guiding/guided_scattering.h"
 #include "montelux/transport/guiding/guiding_learner.h"
+#include "montelux/transport/path_state.h"
 
 namespace montelux {
 namespace {
@@ -196,6 +198,37 @@ TEST(GuidedScattering, FollowsItsDensityAndKeepsTheAlbedo) {
     const double mean = sum / count, error = std::sqrt((squares / count - mean * mean) / count);
     EXPECT_LT(std::abs(mean - 0.6), 5 * error);
     EXPECT_GT(error, 0);
+}
+
+// Branches bring what the pixel expects, within both bounds.
+TEST(GuidedScattering, SplitsByWhatAPathIsExpectedToBring) {
+    GuidingRegion region;
+    region.radiance = 2;
+    const auto branches = [&](float throughput, int most = most_branches_of_sample, float expected = 4) {
+        return guided_branches(region, SampledSpectrum(throughput), most, expected);
+    };
+    EXPECT_EQ(branches(0), 1);
+    EXPECT_EQ(branches(3.9f), 1);
+    EXPECT_EQ(branches(4.1f), 2);
+    EXPECT_EQ(branches(6.1f), 3);
+    EXPECT_EQ(branches(1e30f), most_branches_at_vertex);
+    EXPECT_EQ(branches(1e30f, 3), 3);
+    EXPECT_EQ(branches(1e30f, 1), 1);
+    EXPECT_EQ(branches(1e30f, 64, 0), 1); // it is not known what the pixel expects
+    EXPECT_EQ(branches(std::numeric_limits<float>::quiet_NaN()), 1);
+    // Branches share what a sample may have.
+    for (const int at_each : {2, 3, 4}) {
+        PathState state({});
+        int leaves = 1;
+        for (int i = 0; i < 10; ++i) {
+            const int count = branches(2.0f * float(at_each) + 0.1f, state.branches);
+            state.split(count);
+            leaves *= count;
+        }
+        EXPECT_LE(leaves, most_branches_of_sample);
+        EXPECT_GT(leaves, most_branches_of_sample / 4);
+        EXPECT_NEAR(double(average(state.throughput)), 1.0 / leaves, 1e-6);
+    }
 }
 
 // Counted on the square that the guide's directions are learned on, where its density is constant by squares. The

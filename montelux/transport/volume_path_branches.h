@@ -1,0 +1,81 @@
+// VolumePathBranches: the branches of a path through media that a guide splits, followed one after another.
+#pragma once
+
+#include <array>
+#include <optional>
+
+#include "montelux/mc/random/sample_stream.h"
+#include "montelux/transport/guiding/guided_scattering.h"
+#include "montelux/transport/volume_path_lights.h"
+
+namespace montelux {
+
+// The part of VolumePath (volume_path.h) that keeps the branches. A sample's are bounded, and so are those that wait:
+// the splits on the way to the followed one have a product of at most most_branches_of_sample.
+template <RandomStream Stream>
+class VolumePathBranches : protected VolumePathLights<Stream> {
+  protected:
+    using VolumePathLights<Stream>::VolumePathLights;
+    using VolumePathLights<Stream>::state_;
+    using VolumePathLights<Stream>::stream_;
+
+    // Continues by scatter() from a vertex of a region (null: none), where a guide may split the path. The branches that
+    // begin here but for one are taken up when that has ended.
+    template <typename F>
+    void split(const GuidingRegion* region, const F& scatter) {
+        if constexpr (std::same_as<Stream, SampleStream>)
+            if (region != nullptr && state_.trace == nullptr) {
+                const int count =
+                    guided_branches(*region, state_.carried(), state_.branches, state_.expected);
+                if (count > 1) {
+                    state_.split(count);
+                    const Branch here{state_, stream_, body_events_, passages_};
+                    for (int i = 1; i < count; ++i) {
+                        stream_ = here.stream.branch(static_cast<std::uint32_t>(i));
+                        scatter();
+                        if (state_.alive)
+                            waiting_[waiting_count_++].emplace(
+                                Branch{state_, stream_, body_events_, passages_});
+                        take_up(here);
+                    }
+                }
+            }
+        scatter();
+    }
+    // False if none waits.
+    bool takes_up_branch() {
+        if (waiting_count_ == 0) return false;
+        take_up(*waiting_[--waiting_count_]);
+        return true;
+    }
+
+    int body_events_ = 0; // inside translucent bodies
+    int passages_ = 0;    // straight ones, not counted, since the last event that was
+
+  private:
+    struct Branch {
+        VolumeState state;
+        Stream stream;
+        int body_events = 0, passages = 0;
+    };
+    static constexpr std::size_t most_waiting = 3 * (most_branches_at_vertex - 1);
+    static_assert(most_branches_at_vertex * most_branches_at_vertex * most_branches_at_vertex ==
+                  most_branches_of_sample);
+
+    // What the film gets is the sum over the branches.
+    void take_up(const Branch& branch) {
+        const SampledSpectrum radiance = state_.radiance;
+        const float transparency = state_.transparency;
+        state_ = branch.state;
+        state_.radiance = radiance;
+        state_.transparency = transparency;
+        stream_ = branch.stream;
+        body_events_ = branch.body_events;
+        passages_ = branch.passages;
+    }
+
+    std::array<std::optional<Branch>, most_waiting> waiting_;
+    std::size_t waiting_count_ = 0;
+};
+
+} // namespace montelux

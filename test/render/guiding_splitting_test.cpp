@@ -1,0 +1,172 @@
+// Paths that a guide splits: trees of bounded size, with the same mean and the same bits in any batch.
+#include "test/render/hidden_lamp.h"
+#include "test/render/mixed_scene.h"
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <memory>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/stats/moments.h"
+#include "montelux/render/guide_training.h"
+#include "montelux/transport/guiding/guiding_learner.h"
+
+namespace montelux::testing {
+namespace {
+
+// The slit is a window whose index of refraction depends on the wavelength: behind it a path has one left. A whole wall
+// shines, for light samples do not reach through the window.
+SceneBuilder lamp_behind_prism(int size, double slit = 0.2) {
+    SceneBuilder b = hidden_lamp(size, 0.7f, slit);
+    const Spectrum flint(PiecewiseLinear::from_pairs(std::array{360.0f, 1.9f, 830.0f, 1.4f}));
+    b.add_mesh(square(Transform::translate({1.9, 0, 0}) * Transform::rotate(-90, {0, 1, 0})),
+               b.add(DiffuseMaterial{gray(0)}), 4);
+    const Index glass = b.add(DielectricMaterial{add_spectrum(b.scene, flint), alpha_of(0)});
+    for (const double side : {-1, 1})
+        b.add_mesh(square(Transform::translate({0.8 + 0.01 * side, 1 - slit / 2, 0}) *
+                          Transform::rotate(90 * side, {0, 1, 0}) * Transform::scale({1, slit / 2, 1})),
+                   glass);
+    return b;
+}
+SceneBuilder lamp_in_fog(int size, double slit = 0.2) {
+    SceneBuilder b = hidden_lamp(size, 0.7f, slit);
+    b.scene.media.push_back(HomogeneousMedium{.sigma_a = 0.02f, .sigma_s = 0.3f});
+    b.scene.camera.medium = 0;
+    return b;
+}
+
+// Samples with a guide that is trained here, and without it.
+class Guided {
+  public:
+    explicit Guided(SceneBuilder b)
+        : description_(prepared(std::move(b.description))), renderer_(description_), guided_(context()),
+          plain_(context()), tracer_(renderer_.accelerator()) {
+        train_guide(guided_, renderer_.accelerator(), description_.integrator,
+                    {.bounds = description_.film.crop, .samples = 64});
+    }
+    std::vector<SampleContext::Key> keys(std::uint64_t samples) const {
+        std::vector<SampleContext::Key> keys;
+        for (int y = 0; y < description_.film.height; ++y)
+            for (int x = 0; x < description_.film.width; ++x)
+                for (std::uint64_t s = 0; s < samples; ++s) keys.push_back({x, y, s});
+        return keys;
+    }
+    std::vector<SampleContext::Result> take(std::span<const SampleContext::Key> keys, bool guided = true) {
+        std::vector<SampleContext::Result> results(keys.size());
+        (guided ? guided_ : plain_).take(tracer_, keys, batch_, results);
+        return results;
+    }
+    // Of the samples that were taken last, in a scene without media.
+    std::vector<int> branches(std::size_t samples) const {
+        std::vector<int> count(samples, 1);
+        for (const PathBatch::Origin& o : batch_.integrator.path.origins) ++count[o.sample];
+        return count;
+    }
+    // From now on a guide that has learned the same, and expects next to nothing of each pixel.
+    void expect_little() {
+        const std::vector<SampleContext::Key> all = keys(16);
+        std::vector<float> radiance(all.size());
+        std::array<std::vector<GuidingRecord>, 1> records;
+        guided_.teach(
+            tracer_, all, batch_, radiance, [](std::size_t) { return true; }, records[0]);
+        const PixelBounds& bounds = description_.film.crop;
+        guided_.set_guide(std::make_shared<const GuidingField>(
+            GuidingLearner::learn(records, {}, bounds, std::vector<float>(keys(1).size(), 1e-6f))));
+    }
+    std::uint64_t rays() const { return tracer_.statistics.rays(); }
+    bool has_guide() const { return guided_.guide() != nullptr; }
+    const IntegratorSettings& settings() const { return description_.integrator; }
+
+  private:
+    static SceneDescription prepared(SceneDescription d) {
+        d.integrator.guiding = Guiding::on;
+        d.sampler.kind = SamplerKind::independent;
+        return d;
+    }
+    SampleContext context() const {
+        return {description_, renderer_.sampler(), renderer_.scene(), renderer_.camera()};
+    }
+
+    SceneDescription description_;
+    Renderer renderer_;
+    SampleContext guided_, plain_;
+    RayTracer tracer_;
+    SampleContext::Batch batch_;
+};
+
+TEST(GuidingSplits, SamplesAreTrees) {
+    Guided guided(hidden_lamp(16));
+    ASSERT_TRUE(guided.has_guide());
+    const std::vector<SampleContext::Key> keys = guided.keys(16);
+    guided.take(keys);
+    const std::vector<int> branches = guided.branches(keys.size());
+    EXPECT_GT(std::ranges::count_if(branches, [](int n) { return n > 1; }),
+              static_cast<std::ptrdiff_t>(keys.size() / 20));
+}
+
+// Where pixels expect next to nothing, every vertex would like to split.
+TEST(GuidingSplits, TreesAreBounded) {
+    Guided guided(hidden_lamp(12));
+    guided.expect_little();
+    const std::vector<SampleContext::Key> keys = guided.keys(8);
+    guided.take(keys);
+    const std::vector<int> branches = guided.branches(keys.size());
+    EXPECT_EQ(std::ranges::max(branches), most_branches_of_sample);
+
+    Guided foggy(lamp_in_fog(12));
+    foggy.expect_little();
+    // Of one path: a ray, a shadow ray from its end, and one from a point on it. Nothing here is passed.
+    const std::uint64_t path = 3 * (static_cast<std::uint64_t>(foggy.settings().max_depth) + 1);
+    std::uint64_t most = 0;
+    for (const SampleContext::Key& key : foggy.keys(2)) {
+        const std::uint64_t before = foggy.rays();
+        foggy.take({&key, 1});
+        most = std::max(most, foggy.rays() - before);
+    }
+    EXPECT_GT(most, 4 * path);
+    EXPECT_LE(most, path * most_branches_of_sample);
+}
+
+// Whatever else is in the batch, and in any order: so threads, ranks and resumed renders get the same bits.
+TEST(GuidingSplits, SamplesHaveTheSameBitsInAnyBatch) {
+    for (SceneBuilder b : {hidden_lamp(12), lamp_behind_prism(12), lamp_in_fog(12)}) {
+        Guided guided(std::move(b));
+        std::vector<SampleContext::Key> keys = guided.keys(4);
+        const auto together = guided.take(keys);
+        for (std::size_t i = 0; i < keys.size(); ++i) {
+            const auto alone = guided.take({&keys[i], 1});
+            ASSERT_EQ(alone[0].film.radiance, together[i].film.radiance) << i;
+        }
+        std::ranges::reverse(keys);
+        auto reversed = guided.take(keys);
+        std::ranges::reverse(reversed);
+        for (std::size_t i = 0; i < keys.size(); ++i)
+            ASSERT_EQ(reversed[i].film.radiance, together[i].film.radiance) << i;
+    }
+}
+
+// 12 tests at 5 standard errors: 7e-6.
+TEST(GuidingSplits, MeansAreThoseOfSinglePaths) {
+    // A wide slit, so that paths without a guide have little noise.
+    constexpr double slit = 1;
+    for (SceneBuilder b :
+         {hidden_lamp(16, 0.7f, slit), lamp_behind_prism(16, 1.6), lamp_in_fog(16, slit), mixed_scene()}) {
+        Guided guided(std::move(b));
+        const std::vector<SampleContext::Key> keys = guided.keys(256);
+        Moments3 with, without;
+        for (const auto& r : guided.take(keys)) with.add(r.film.radiance);
+        for (const auto& r : guided.take(keys, false)) without.add(r.film.radiance);
+        for (int c = 0; c < 3; ++c) {
+            const double error = std::hypot(with.standard_error(c), without.standard_error(c));
+            EXPECT_LT(std::abs(with.mean(c) - without.mean(c)), 5 * error)
+                << with.mean(c) << " " << without.mean(c);
+            EXPECT_LT(error, 0.05 * without.mean(c)); // so that a bias would be seen
+        }
+    }
+}
+
+} // namespace
+} // namespace montelux::testing
