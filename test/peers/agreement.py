@@ -86,7 +86,8 @@ def pooled(variance: np.ndarray) -> np.ndarray:
 
     def sums(a: np.ndarray) -> np.ndarray:
         wide = np.pad(a, ((1, 1), (1, 1), (0, 0)))
-        return sum(wide[y : y + height, x : x + width] for y in range(3) for x in range(3))
+        parts = [wide[y : y + height, x : x + width] for y in range(3) for x in range(3)]
+        return np.sum(parts, axis=0)
 
     return sums(variance) / sums(np.ones_like(variance))
 
