@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab docs build test test-all test-view test-peers test-packages test-blender blender packages wheels fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
+.PHONY: help demo lab docs build test test-all test-view test-peers test-methods test-packages test-blender blender packages wheels fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -57,6 +57,13 @@ test-peers: build ## scenes of Mitsuba's documentation by both programs, pixel b
 	python=$(PEERS)/mitsuba/bin/python; test -x $$python || python=python3; \
 	$$python test/peers/mitsuba_peers.py $(BUILD)/montelux $(PEER_SCENES) --json $(PEERS)/result.json \
 	    $(if $(ONLY),--only $(ONLY)) $(if $(VARIANT),--variant $(VARIANT)) | tee $(PEERS)/result.md
+
+METHODS_OUT := build/test-methods
+test-methods: build ## guided, bidirectional, ... pictures beside path tracing's on 35 scenes (an hour of CPU; less with ONLY=pool,fog)
+	@mkdir -p $(METHODS_OUT) && rm -f $(METHODS_OUT)/result.json
+	python=$(LAB_PYTHON); test -x $$python || python=python3; \
+	$$python test/peers/methods_agreement.py $(BUILD)/montelux --json $(METHODS_OUT)/result.json \
+	    $(if $(ONLY),--only $(ONLY)) | tee $(METHODS_OUT)/result.md
 
 test-view: dependencies ## the viewer's page in Chromium, alone and with the program (some minutes)
 	cmake/install-dependencies.sh browser

@@ -26,6 +26,7 @@ HERE = Path(__file__).resolve().parent
 sys.path.insert(0, str(HERE.parent.parent / "bench" / "render"))
 
 from llvm_library import environment  # noqa: E402
+from program import error_message, last_line  # noqa: E402
 from scene_text import prepared_scene, with_moments, write  # noqa: E402
 from z_test import compare  # noqa: E402
 
@@ -35,11 +36,6 @@ TIME_LIMIT = 900  # seconds for one picture
 
 class Refused(Exception):
     pass
-
-
-def last_line(text: str) -> str:
-    lines = [line for line in text.strip().splitlines() if line.strip()]
-    return lines[-1].strip() if lines else "no message"
 
 
 def read_exr(file: Path) -> Tuple[np.ndarray, np.ndarray]:
@@ -57,7 +53,7 @@ def our_picture(program: str, scene: Path, spp: int, seed: int) -> Tuple[np.ndar
     command = [program, "render", str(scene), "-o", str(out), "--spp", str(spp), "--sampler", "independent"]
     done = subprocess.run(command + ["--seed", str(seed)], capture_output=True, text=True, timeout=TIME_LIMIT)
     if done.returncode != 0:
-        raise Refused(last_line(done.stderr).replace(f"{scene.parent}/", "").removeprefix("montelux: error: "))
+        raise Refused(error_message(done.stderr).replace(f"{scene.parent}/", ""))
     return read_exr(out)
 
 

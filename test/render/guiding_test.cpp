@@ -4,9 +4,17 @@
 #include "test/sanitized.h"
 #include "test/temporary_folder.h"
 #include <cmath>
+#include <cstdint>
+#include <cstdio>
 #include <gtest/gtest.h>
+#include <memory>
+#include <utility>
+#include <vector>
 
+#include "montelux/film/pixel_warnings.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/special.h"
+#include "montelux/mc/stats/moments.h"
 #include "montelux/mc/stats/z_test.h"
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/guide_training.h"
@@ -29,6 +37,73 @@ TEST(Guiding, FindsHiddenLightFarBetter) {
 
 TEST(Guiding, IsUnbiased) {
     for (const SceneBuilder& b : {hidden_lamp(24), mixed_scene(1, 24, 24)}) expect_guiding_is_unbiased(b);
+}
+
+// Each pixel of each render against the mean of the renders with other seeds, which have other guides. Shares of scores
+// below one and two by seed, beside those of Student's law: that of the difference's variance, to which the others add
+// little (Welch 1947).
+struct GuidedShares {
+    RunningMoments one, two;
+    double expected_one = 0, expected_two = 0;
+    double marked = 0; // share of the pixels whose error is called unreliable, left out
+};
+GuidedShares guided_shares(SceneDescription d, std::uint32_t spp, std::uint64_t seeds) {
+    d.integrator.guiding = Guiding::on;
+    d.sampler.spp = spp;
+    const auto prepared = std::make_shared<const PreparedScene>(d);
+    std::vector<Film> films;
+    for (d.sampler.seed = 0; d.sampler.seed < seeds; ++d.sampler.seed) {
+        RenderState state(d);
+        Renderer(d, {}, 0, prepared).render(state);
+        EXPECT_NE(state.guide, nullptr);
+        films.push_back(std::move(state.film));
+    }
+    const std::size_t pixels = films[0].pixels().size();
+    std::vector<double> mean(pixels), variance(pixels);
+    for (std::size_t p = 0; p < pixels; ++p)
+        for (const Film& film : films) {
+            mean[p] += film.pixels()[p].replicates().mean(1);
+            variance[p] += film.pixels()[p].replicates().variance_of_mean(1);
+        }
+    GuidedShares r;
+    const double others = double(seeds) - 1;
+    for (const Film& film : films) {
+        const std::vector<PixelWarning> warnings = pixel_warnings(film);
+        double one = 0, two = 0, count = 0;
+        for (std::size_t p = 0; p < pixels; ++p) {
+            if (marks_unreliable_error(warnings[p])) continue;
+            const SkewMoments<3>& m = film.pixels()[p].replicates();
+            const double v = m.variance_of_mean(1);
+            const double t = std::abs(m.mean(1) - (mean[p] - m.mean(1)) / others) /
+                             std::sqrt(v + (variance[p] - v) / (others * others));
+            one += t < 1;
+            two += t < 2;
+            ++count;
+        }
+        r.one.add(one / count);
+        r.two.add(two / count);
+        r.marked += (1 - count / double(pixels)) / double(seeds);
+    }
+    const double freedom = spp - 1.0;
+    r.expected_one = 1 - 2 * student_t_cdf(-1, freedom);
+    r.expected_two = 1 - 2 * student_t_cdf(-2, freedom);
+    return r;
+}
+
+void expect_guided_calibration(const SceneBuilder& b, std::uint32_t spp, std::uint64_t seeds) {
+    const GuidedShares s = guided_shares(b.description, spp, seeds);
+    std::printf("within 1 error %.3f +- %.3f (%.3f), within 2 %.3f +- %.3f (%.3f), marked %.2f\n",
+                s.one.mean(), s.one.standard_error(), s.expected_one, s.two.mean(), s.two.standard_error(),
+                s.expected_two, s.marked);
+    EXPECT_NEAR(s.one.mean(), s.expected_one, 0.01 + 4 * s.one.standard_error());
+    EXPECT_NEAR(s.two.mean(), s.expected_two, 0.005 + 4 * s.two.standard_error());
+    EXPECT_LT(s.marked, 0.5);
+}
+
+// The second scene has less skewed samples: there errors that are too small or too large by a tenth are seen.
+TEST(Guiding, ErrorsOfPixelsAreCalibrated) {
+    expect_guided_calibration(hidden_lamp(6, 0.7f, 0.8), 384, 24);
+    expect_guided_calibration(mixed_scene(1, 12, 12), 64, 64);
 }
 
 TEST(Guiding, AnyNumberOfThreads) {

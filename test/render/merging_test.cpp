@@ -372,7 +372,7 @@ TEST(MergingPictures, WhereNothingMergesAWarningSaysSo) {
         m = ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(3)}, .roughness = alpha_of(0)};
     dark.description = shallow.description;
     dark.description.scene = {};
-    dark.add_mesh(square(), dark.add(DiffuseMaterial{gray(0.5f)}));
+    dark.add_mesh(square(Transform()), dark.add(DiffuseMaterial{gray(0.5f)}));
     for (SceneBuilder* b : {&shallow, &mirrors, &dark}) {
         b->description.sampler.spp = 2;
         RenderState state(b->description);
