@@ -90,7 +90,9 @@ void MergingPasses::plan() {
         for (int i = 0; i < across; ++i) {
             const int x = crop_.x0 + static_cast<int>((i + 0.5) / across * crop_.width()),
                       y = crop_.y0 + static_cast<int>((j + 0.5) / across * crop_.height());
-            if (const auto size = context_.visible_pixel(tracer, {x, y, 0})) sizes.push_back(*size);
+            // 0 of surfaces seen edge-on.
+            if (const auto size = context_.visible_pixel(tracer, {x, y, 0}); size && *size > 0)
+                sizes.push_back(*size);
         }
     if (sizes.empty()) { // nothing merges that is seen
         first_radius_ = 1e-3 * std::max(accelerator_.bounds().radius(), 1e-30);

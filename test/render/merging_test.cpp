@@ -366,13 +366,11 @@ TEST(MergingPictures, RefusesWhatItCannotDo) {
 
 // Frames of an animation may be dark, or show mirrors alone.
 TEST(MergingPictures, WhereNothingMergesAWarningSaysSo) {
-    SceneBuilder shallow = merging_room(8, 8), mirrors = merging_room(8, 8), dark;
+    SceneBuilder shallow = merging_room(8, 8), mirrors = merging_room(8, 8), dark = lit_corner();
     shallow.description.integrator.max_depth = 1;
     for (Material& m : mirrors.description.scene.materials)
         m = ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(3)}, .roughness = alpha_of(0)};
-    dark.description = shallow.description;
-    dark.description.scene = {};
-    dark.add_mesh(square(Transform()), dark.add(DiffuseMaterial{gray(0.5f)}));
+    dark.description.integrator = mirrors.description.integrator; // and no lamp
     for (SceneBuilder* b : {&shallow, &mirrors, &dark}) {
         b->description.sampler.spp = 2;
         RenderState state(b->description);
