@@ -22,7 +22,8 @@ std::string_view hard_options_help() {
            "  --json FILE       every run\n"
            "  --report A,B      runs nothing: prints the tables of files that --json wrote, taken together\n"
            "  --vegas-python P  Python interpreter that can import the package vegas\n"
-           "  --quick           as a test: auto and adaptive on a few seeds (--seeds changes how many), exit\n"
+           "  --quick           as a test: auto and adaptive on a few seeds (--seeds changes how many), "
+           "exit\n"
            "                    code 1 where there are more silent failures than allowed\n"
            "  --verbose         each silent failure in words\n"
            "  --list            families with their formulas, and methods\n";
