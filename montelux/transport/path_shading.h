@@ -225,7 +225,8 @@ void PathIntegrator::scatter(const Vertex<Stream>& vertex, const SurfacePoint& s
     state.sees_lights = scattered->specular;
     if (casters_ != nullptr) [[unlikely]] {
         const bool joins = scattered->specular && state.chain == ManifoldChain::begun;
-        state.chain = !scattered->specular                                            ? ManifoldChain::begun
+        const bool begins = !scattered->specular && !state.scatters_narrowly;
+        state.chain = begins                                                          ? ManifoldChain::begun
                       : joins && hit.instance == no_index && casters_->has(hit.shape) ? ManifoldChain::joined
                                                                                       : ManifoldChain::none;
     }

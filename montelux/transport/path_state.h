@@ -29,7 +29,8 @@ struct PathState {
     bool sees_lights = true;        // no other strategy can find the light that the ray hits
     bool scattered_roughly = false; // some event so far was not specular
     ManifoldChain chain = ManifoldChain::none;
-    bool alive = true; // false: the path has ended; do not trace the ray
+    bool scatters_narrowly = false; // at this vertex: manifold sampling leaves lamps to scattering
+    bool alive = true;              // false: the path has ended; do not trace the ray
     FirstHit first;
     float transparency = 0;                 // as in FilmContribution
     SampleExtras* extras = nullptr;         // null: not wanted

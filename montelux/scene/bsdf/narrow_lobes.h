@@ -1,0 +1,26 @@
+// least_alpha: how narrow the lobes of a BSDF are.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+#include "montelux/scene/bsdf/bsdf_model.h"
+
+namespace montelux {
+
+// The smallest roughness alpha among the microfacet lobes that are no deltas, the geometric mean of both axes; 1
+// without such a lobe. A lobe about a direction covers a solid angle in proportion to its square.
+template <BsdfModel B>
+float least_alpha(const B& bsdf) {
+    float least = 1;
+    bsdf.visit_fields([&]<typename F>(const char*, const F& field) {
+        if constexpr (BsdfModel<F>) {
+            least = std::min(least, least_alpha(field));
+        } else if constexpr (requires { field.alpha_x; }) {
+            if (!field.is_smooth()) least = std::min(least, std::sqrt(field.alpha_x * field.alpha_y));
+        }
+    });
+    return least;
+}
+
+} // namespace montelux
