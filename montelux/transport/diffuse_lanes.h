@@ -93,7 +93,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
     LaneStream<W> stream(group.streams, size);
     DiffuseBsdfOf<T> bsdf;
     SpectrumLanes<W> throughput;
-    T eta_scale;
+    T roulette_scale;
     Vec3<T> w, tangent;
     LaneMask<W> follows_tangent(false);
     for (int i = 0; i < size; ++i) {
@@ -133,7 +133,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
             std::get_if<DiffuseMaterial>(&scene.materials[material])->bsdf(at).reflectance;
         bsdf.reflectance.set_lane(i, reflectance);
         throughput.set_lane(i, state.throughput);
-        eta_scale.set(i, state.eta_scale);
+        roulette_scale.set(i, state.roulette_scale);
         state.previous = {lane_of(s.p, i), lane_of(s.ng, i), s.error[i], Vec3f{}};
         if (state.depth == 1)
             state.first = {.albedo = reflectance, .normal = lane_of(s.ns, i), .depth = hit.t, .found = true};
@@ -203,7 +203,7 @@ void PathIntegrator::shade_diffuse(const SceneView& scene, LaneShading level, Hi
     const Vec3<T> origin = offset_origin(s.p, s.ng, s.error, wi);
 
     // Russian roulette.
-    const T strength = max_value(throughput) * eta_scale;
+    const T strength = max_value(throughput) * roulette_scale;
     LaneMask<W> survives = stream.active & (strength > 0);
     LaneMask<W> plays(false);
     for (int i = 0; i < size; ++i)

@@ -1,4 +1,4 @@
-// PathIntegrator: path tracing, one random path per camera ray.
+// PathIntegrator: path tracing, one random path per camera ray; a guide may split it.
 #pragma once
 
 #include <optional>

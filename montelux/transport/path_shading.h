@@ -119,7 +119,7 @@ struct PathIntegrator::Vertex {
 
     // Russian roulette on the throughput to the film. Returns false if the path ends.
     bool survives() const {
-        const float strength = max_value(state.throughput) * state.eta_scale;
+        const float strength = max_value(state.throughput) * state.roulette_scale;
         if (!(strength > 0)) {
             // A NaN throughput must not end silently: it makes the sample bad.
             state.radiance += state.throughput;
@@ -231,7 +231,7 @@ void PathIntegrator::scatter(const Vertex<Stream>& vertex, const SurfacePoint& s
                                                                                       : ManifoldChain::none;
     }
     if (!scattered->specular) state.scattered_roughly = true;
-    if (scattered->transmission) state.eta_scale *= scattered->eta * scattered->eta;
+    if (scattered->transmission) state.roulette_scale *= scattered->eta * scattered->eta;
     const Vec3f wi = surface.frame.to_world(scattered->wi);
     if (vertex.recorder) vertex.recorder.scattered({*scattered, wi});
     state.ray.o = offset_origin(s.p, s.ng, s.error, wi);

@@ -22,9 +22,10 @@ struct PathState {
     Ray ray;                   // to be traced next
     SampledWavelengths lambda; // may lose its secondary wavelengths
     SampledSpectrum radiance{}, throughput{1};
-    ReferencePoint previous;        // the last scattering vertex; at first the origin of the camera ray
-    float bsdf_pdf = 0;             // of the ray's direction there
-    float eta_scale = 1;            // squared index of refraction along the path, undone for Russian roulette
+    ReferencePoint previous; // the last scattering vertex; at first the origin of the camera ray
+    float bsdf_pdf = 0;      // of the ray's direction there
+    // Of throughputs in Russian roulette: squared index of refraction along the path, times the branches it is one of.
+    float roulette_scale = 1;
     int depth = 0;                  // scattering events so far
     bool sees_lights = true;        // no other strategy can find the light that the ray hits
     bool scattered_roughly = false; // some event so far was not specular
@@ -65,6 +66,7 @@ struct PathState {
     // The path is one of `count` branches.
     void split(int count) {
         throughput /= static_cast<float>(count);
+        roulette_scale *= static_cast<float>(count); // or roulette would undo the split where nothing guides
         branches /= count;
         keeps_spectrum = keeps_spectrum || !lambda.secondary_terminated();
     }

@@ -345,7 +345,7 @@ class VolumePath : private VolumePathBranches<Stream> {
         state_.bsdf_pdf = scattered->pdf;
         state_.sees_lights = scattered->specular;
         if (!scattered->specular) state_.scattered_roughly = true;
-        if (scattered->transmission) state_.eta_scale *= scattered->eta * scattered->eta;
+        if (scattered->transmission) state_.roulette_scale *= scattered->eta * scattered->eta;
         if (recorder_) recorder_.scattered({*scattered, wi});
         leave(s, wi);
         if (scattered->transmission) state_.body = body_at(state_.medium, context);
@@ -372,7 +372,7 @@ class VolumePath : private VolumePathBranches<Stream> {
     // Russian roulette on what the path carries to the film, unless a guide has played its own. Returns false if the
     // path ends.
     bool survives(bool guided) {
-        const float strength = max_value(state_.carried()) * state_.eta_scale;
+        const float strength = max_value(state_.carried()) * state_.roulette_scale;
         if (!(strength > 0)) {
             // A NaN must not end silently: it makes the sample bad.
             state_.radiance += state_.carried();

@@ -66,9 +66,9 @@ GuidedDirection sample_guided(const P& phase, Vec3f wo, const GuidingRegion& reg
     return {wi, pdf, phase_pdf / pdf};
 }
 
-// What a path of so much throughput is expected to bring, over what its pixel expects. Russian roulette and splitting
-// keep it near 1: Vorba and Krivanek 2016, "Adjoint-Driven Russian Roulette and Splitting in Light Transport
-// Simulation", with a weight window that is a point.
+// What a path of so much throughput is expected to bring, over what its pixel expects. Russian roulette below 1 and
+// splitting from 2 on keep it near 1: Vorba and Krivanek 2016, "Adjoint-Driven Russian Roulette and Splitting in Light
+// Transport Simulation".
 inline float expected_share(const GuidingRegion& region, SampledSpectrum throughput, float expected) {
     return average(throughput) * region.radiance / expected;
 }

@@ -265,5 +265,18 @@ TEST(GuidedScattering, DirectionsFromPhaseFunctionsFollowTheirDensity) {
     }
 }
 
+// Where nothing guides, as in smooth glass, Russian roulette goes by what the whole path carries: a branch is no weaker
+// than the path that was split.
+TEST(GuidedSplitting, RouletteWithoutAGuideDoesNotUndoIt) {
+    PathState state{CameraSample{}};
+    state.throughput = SampledSpectrum(0.8f);
+    const float strength = max_value(state.throughput) * state.roulette_scale;
+    state.split(4);
+    state.split(2);
+    EXPECT_FLOAT_EQ(max_value(state.throughput), 0.1f);
+    EXPECT_FLOAT_EQ(max_value(state.throughput) * state.roulette_scale, strength);
+    EXPECT_EQ(state.branches, 8);
+}
+
 } // namespace
 } // namespace montelux
