@@ -17,7 +17,7 @@ inline constexpr int quick_seeds = 4;
 inline constexpr double quick_targets[] = {1e-2, 1e-3};
 inline constexpr double quick_cap = 500000;
 inline constexpr double quick_seconds = 20;
-inline constexpr QuickLimit quick_limits[] = {{"auto", 3}, {"adaptive", 5}};
+inline constexpr QuickLimit quick_limits[] = {{"auto", 0}, {"adaptive", 0}};
 // Shares of the runs that converged whose truth lies within one and two claimed errors, by Student's law of
 // 15 degrees of freedom: adaptive has 16 replicates. The errors of `auto` may be larger, because those of
 // cubature are bounds. A share that is this many standard deviations of a binomial count below fails.

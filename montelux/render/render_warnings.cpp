@@ -75,9 +75,8 @@ std::string merging_notice(const RenderSnapshot& result, const RenderTarget& tar
 
 std::string merging_warning(const MergingSummary& m) {
     if (m.first_radius > 0 && m.bytes == 0)
-        return "merging has no effect: no light path reached a surface that is no mirror or smooth glass by "
-               "way "
-               "of another surface";
+        return "merging has no effect: no light path reached a surface that is no mirror or smooth glass "
+               "by way of another surface";
     if (m.light_paths >= m.of_paths) return {};
     char text[200];
     std::snprintf(text, sizeof text,

@@ -168,5 +168,21 @@ TEST(GuidingSplits, MeansAreThoseOfSinglePaths) {
     }
 }
 
+// Nearly every path that reaches the window has been split.
+TEST(GuidingSplits, MeansAreThoseOfSinglePathsWhereBranchesLoseWavelengths) {
+    Guided guided(lamp_behind_prism(8, 1.6));
+    guided.expect_little();
+    const std::vector<SampleContext::Key> keys = guided.keys(128), more = guided.keys(1024);
+    Moments3 with, without;
+    for (const auto& r : guided.take(keys)) with.add(r.film.radiance);
+    for (const auto& r : guided.take(more, false)) without.add(r.film.radiance);
+    for (int c = 0; c < 3; ++c) {
+        const double error = std::hypot(with.standard_error(c), without.standard_error(c));
+        EXPECT_LT(std::abs(with.mean(c) - without.mean(c)), 5 * error)
+            << with.mean(c) << " " << without.mean(c);
+        EXPECT_LT(error, 0.05 * without.mean(c));
+    }
+}
+
 } // namespace
 } // namespace montelux::testing
