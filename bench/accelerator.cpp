@@ -2,7 +2,10 @@
 // Paterno, Ranjan, Terzic, Zubair 2022, "m-Cubes: An efficient and portable implementation of Multi-Dimensional
 // Integration for GPUs", section 6), which are those of Genz with fixed parameters.
 //
-//     accelerator [DEVICE [EVALUATIONS]]       cuda and 1e8, or emulated to check
+//     accelerator [DEVICE [EVALUATIONS [THREADS]]]       cuda, 1e8 and 2; emulated to check
+//
+// The processor computes a tenth of the evaluations on that many threads. The device's results are summed on as many,
+// then on all that there are.
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -78,10 +81,11 @@ struct Timed {
     double rate; // evaluations per second
 };
 
-Timed timed(const Integrand& f, int dimensions, const std::string& method, std::uint64_t evaluations) {
+Timed timed(const Integrand& f, int dimensions, const std::string& method, std::uint64_t evaluations,
+            int threads) {
     const auto begin = std::chrono::steady_clock::now();
-    IntegrationResult result =
-        integrate(f, Domain::unit_cube(dimensions), Method::named(method), {.evaluations = evaluations});
+    IntegrationResult result = integrate(f, Domain::unit_cube(dimensions), Method::named(method),
+                                         {.evaluations = evaluations}, {.threads = threads});
     const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
     const double rate = static_cast<double>(result.evaluations) / seconds.count();
     return {std::move(result), rate};
@@ -98,13 +102,15 @@ double rate_alone(const std::shared_ptr<const DeviceFunction>& f, std::uint64_t 
     return static_cast<double>((evaluations + block - 1) / block * block) / seconds.count();
 }
 
-void run(const std::string& name, std::uint64_t evaluations) {
+void run(const std::string& name, std::uint64_t evaluations, int threads) {
     const std::shared_ptr<Device> device = Device::open(name);
-    std::printf("device: %s; processor: %d threads; %.3g evaluations\n\n", device->description().c_str(),
-                thread_count(), static_cast<double>(evaluations));
-    std::printf("| integrand | method | value | processor, evaluations/s | device, evaluations/s | ratio | "
-                "difference, "
-                "errors |\n|---|---|---|---:|---:|---:|---:|\n");
+    const int all = thread_count();
+    std::printf("device: %s; %.3g evaluations; evaluations per second\n\n", device->description().c_str(),
+                static_cast<double>(evaluations));
+    std::printf(
+        "| integrand | method | value | processor, %d threads | device, %d threads | ratio | "
+        "device, %d threads | ratio | difference, errors |\n|---|---|---|---:|---:|---:|---:|---:|---:|\n",
+        threads, threads, all);
     for (const TestIntegrand& f : integrands) {
         const Integrand here = [&f](std::span<const double> x) {
             return f.here(static_cast<int>(x.size()), x.data());
@@ -112,16 +118,19 @@ void run(const std::string& name, std::uint64_t evaluations) {
         const auto compiled = std::make_shared<const DeviceFunction>(
             device, FunctionSource{.text = f.there, .file = f.name}, f.dimensions);
         const Integrand there = Integrand::compiled(compiled);
-        std::printf("| %s, %d variables | points alone | | | %.3g | | |\n", f.name, f.dimensions,
+        std::printf("| %s, %d variables | points alone | | | %.3g | | | | |\n", f.name, f.dimensions,
                     rate_alone(compiled, evaluations));
         for (const char* method : {"basic", "quasi", "vegas", "vegas_sobol", "adaptive"}) {
-            timed(there, f.dimensions, method, 100'000); // the device's memory
-            const Timed a = timed(here, f.dimensions, method, evaluations);
-            const Timed b = timed(there, f.dimensions, method, evaluations);
-            const double error = std::hypot(a.result.standard_error[0], b.result.standard_error[0]);
-            std::printf("| %s, %d variables | %s | %s | %.3g | %.3g | %.2f | %.2g |\n", f.name, f.dimensions,
-                        method, to_string(b.result.estimate()).c_str(), a.rate, b.rate, b.rate / a.rate,
-                        std::abs(a.result.value[0] - b.result.value[0]) / error);
+            timed(there, f.dimensions, method, 100'000, 0); // the device's memory
+            const Timed here_few = timed(here, f.dimensions, method, evaluations / 10, threads);
+            const Timed there_few = timed(there, f.dimensions, method, evaluations, threads);
+            const Timed there_all = timed(there, f.dimensions, method, evaluations, all);
+            const IntegrationResult &a = here_few.result, &b = there_all.result;
+            std::printf("| %s, %d variables | %s | %s | %.3g | %.3g | %.1f | %.3g | %.1f | %.2g |\n", f.name,
+                        f.dimensions, method, to_string(b.estimate()).c_str(), here_few.rate, there_few.rate,
+                        there_few.rate / here_few.rate, there_all.rate, there_all.rate / here_few.rate,
+                        std::abs(a.value[0] - b.value[0]) /
+                            std::hypot(a.standard_error[0], b.standard_error[0]));
             std::fflush(stdout);
         }
     }
@@ -132,12 +141,13 @@ void run(const std::string& name, std::uint64_t evaluations) {
 int main(int argc, char** argv) {
     const std::string device = argc > 1 ? argv[1] : "cuda";
     const double evaluations = argc > 2 ? std::atof(argv[2]) : 1e8;
-    if (!(evaluations >= 1000 && evaluations <= 1e15)) {
-        std::fprintf(stderr, "accelerator: expected 1000 to 1e15 evaluations\n");
+    const int threads = argc > 3 ? std::atoi(argv[3]) : 2;
+    if (!(evaluations >= 10'000 && evaluations <= 1e15) || threads < 1 || threads > 1000) {
+        std::fprintf(stderr, "accelerator: expected 10000 to 1e15 evaluations, and 1 to 1000 threads\n");
         return 2;
     }
     try {
-        run(device, static_cast<std::uint64_t>(evaluations));
+        run(device, static_cast<std::uint64_t>(evaluations), threads);
     } catch (const std::exception& error) {
         std::fprintf(stderr, "accelerator: %s\n", error.what());
         return 1;
