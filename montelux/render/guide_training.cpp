@@ -116,7 +116,8 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
     return round;
 }
 
-// What each pixel expects: means around it, no sample of which counts for much, and none below a share of the picture's.
+// What each pixel expects: means around it, none below a share of the picture's. No pixel counts for much more than the
+// picture's mean, unless most of those around it do.
 std::vector<float> expected_radiance(const TrainingRound& round, const PixelBounds& bounds) {
     constexpr int radius = 3;
     constexpr double most_of_mean = 20, least_of_mean = 0.02;
@@ -127,19 +128,23 @@ std::vector<float> expected_radiance(const TrainingRound& round, const PixelBoun
     std::vector<float> expected(round.sums.size());
     parallel_for(height, [&](std::int64_t row) {
         const int y = static_cast<int>(row);
+        std::vector<double> around;
         for (int x = 0; x < width; ++x) {
-            double sum = 0;
-            int count = 0;
+            around.clear();
             for (int v = std::max(0, y - radius); v < std::min(height, y + radius + 1); ++v)
-                for (int u = std::max(0, x - radius); u < std::min(width, x + radius + 1); ++u) {
-                    const std::size_t i = static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
-                                          static_cast<std::size_t>(u);
-                    sum += std::min(round.sums[i] / round.samples, most_of_mean * mean);
-                    ++count;
-                }
+                for (int u = std::max(0, x - radius); u < std::min(width, x + radius + 1); ++u)
+                    around.push_back(
+                        round.sums[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+                                   static_cast<std::size_t>(u)] /
+                        round.samples);
+            const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
+            std::nth_element(around.begin(), middle, around.end());
+            const double most = most_of_mean * std::max(mean, *middle);
+            double sum = 0;
+            for (const double v : around) sum += std::min(v, most);
             expected[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
                      static_cast<std::size_t>(x)] =
-                static_cast<float>(std::max(sum / count, least_of_mean * mean));
+                static_cast<float>(std::max(sum / double(around.size()), least_of_mean * mean));
         }
     });
     return expected;

@@ -86,3 +86,15 @@ def has_driver():
 def test_without_a_driver_there_is_a_sentence():
     with pytest.raises(montelux.Error, match="device 'cuda': there is no NVIDIA driver"):
         montelux.integrate("x", (0, 1), "basic", device="cuda")
+
+
+@pytest.mark.parametrize("method", ["basic", "quasi", "vegas", "vegas_sobol", "adaptive"])
+def test_a_gpu_agrees_with_numpy(method):
+    try:
+        there = montelux.integrate(SOURCE, [(0, 1)] * 5, method, device="cuda", evaluations=2e6, seed=5)
+    except montelux.Error as error:
+        pytest.skip(str(error))
+    here = montelux.integrate(squares, [(0, 1)] * 5, method, evaluations=2e6, seed=5)
+    assert abs(there.value - here.value) <= 1e-12 * here.value
+    assert abs(there.standard_error - here.standard_error) <= 1e-6 * here.standard_error
+    assert there.evaluations == here.evaluations

@@ -138,8 +138,16 @@ def integral(f, **named):
             "import torch; w = torch.tensor(1.0, dtype=torch.float64, requires_grad=True)",
             "assert integral(lambda x: w * product(x), array=torch.from_dlpack) == integral(product)",
         ),
+        (
+            "import torch; torch.cuda.is_available() or exit(77)",
+            "assert integral(product, array=lambda x: torch.from_dlpack(x).cuda()) == integral(product)",
+        ),
+        (
+            "import cupy; cupy.cuda.is_available() or exit(77)",
+            "assert integral(product, array=cupy.asarray) == integral(product)",
+        ),
     ],
-    ids=["jax", "torch"],
+    ids=["jax", "torch", "torch on a GPU", "CuPy"],
 )
 def test_libraries(imports, program):
     library = imports.split(";")[0].removeprefix("import ")
@@ -147,4 +155,6 @@ def test_libraries(imports, program):
         pytest.skip(f"{library} is not installed")
     code = LIBRARY.format(imports=imports, program=program)
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
+    if done.returncode == 77:
+        pytest.skip("there is no GPU")
     assert done.returncode == 0, done.stderr

@@ -36,7 +36,7 @@ def _silent(row: Row) -> str:
 
 
 def _cost(row: Row) -> str:
-    return f"{row['samples']}, {row['cpu']:.0f} s"
+    return f"{row['samples']} x {row['seeds']}, {row['cpu']:.0f} s"
 
 
 def table(results: Dict[str, Dict[str, Row]], methods: List[str], cell: Callable[[Row], str]) -> str:
@@ -78,7 +78,7 @@ def tables(results: Dict[str, Dict[str, Row]], methods: List[str]) -> str:
             table(results, methods, _within),
             "Pixels that fail silently, per thousand: beyond four claimed errors and not doubtful (by Student's law)",
             table(results, methods, _silent),
-            "Samples per pixel of each of the renders, and CPU seconds of all",
+            "Samples per pixel of each of the renders, their number, and CPU seconds of all",
             table(results, methods, _cost),
             refusals(results, methods) or "No method refused a scene.",
             "\n".join(summary(results, m) for m in methods),

@@ -9,7 +9,7 @@ def row(bias, bias_verdict, z_verdict="agrees"):
     return {
         "bias": bias, "bias_error": 0.001, "bias_verdict": bias_verdict, "pooled_z": 1.02, "pooled_z_error": 0.01,
         "z_verdict": z_verdict, "doubtful": 0.1, "doubtful_of_renders": 0.2, "within": [0.68, 0.95, 0.999],
-        "expected": [0.682, 0.954, 0.9999], "samples": 64, "cpu": 12.3,
+        "expected": [0.682, 0.954, 0.9999], "samples": 64, "seeds": 16, "cpu": 12.3,
     }  # fmt: skip
 
 

@@ -130,6 +130,34 @@ TEST(GuidingSplits, TreesAreBounded) {
     EXPECT_LE(most, path * most_branches_of_sample);
 }
 
+// A lit corner on black takes a hundredth of the picture: its pixels are a hundred times brighter than that, and expect
+// what their paths bring.
+TEST(GuidingSplits, BrightObjectsOnBlackExpectTheirLight) {
+    SceneBuilder b = hidden_lamp(64);
+    b.scene = Scene{};
+    const Index white = b.add(DiffuseMaterial{gray(0.8f)});
+    b.add_mesh(square(Transform()), white);
+    b.add_mesh(square(Transform::translate({0, 1, 1}) * Transform::rotate(90, {1, 0, 0})), white);
+    b.add_mesh(square(Transform::translate({0, 0, 3}) * Transform::rotate(180, {1, 0, 0})),
+               b.add(DiffuseMaterial{gray(0)}), 5);
+    b.look({0, -20, 12}, {0, 0, 0.5}, 45);
+    Guided guided(std::move(b));
+    ASSERT_TRUE(guided.has_guide());
+    const std::vector<SampleContext::Key> keys = guided.keys(8);
+    guided.take(keys);
+    std::ptrdiff_t split = 0, of_corner = 0;
+    const std::vector<int> branches = guided.branches(keys.size());
+    const std::vector<SampleContext::Result> results = guided.take(keys);
+    for (std::size_t i = 0; i < keys.size(); ++i) {
+        if (!(max_component(results[i].film.radiance) > 0)) continue;
+        ++of_corner;
+        split += branches[i] > 1;
+    }
+    EXPECT_GT(of_corner, 200);
+    EXPECT_LT(of_corner, static_cast<std::ptrdiff_t>(keys.size() / 50));
+    EXPECT_LT(split, of_corner / 4);
+}
+
 // Whatever else is in the batch, and in any order: so threads, ranks and resumed renders get the same bits.
 TEST(GuidingSplits, SamplesHaveTheSameBitsInAnyBatch) {
     for (SceneBuilder b : {hidden_lamp(12), lamp_behind_prism(12), lamp_in_fog(12)}) {
