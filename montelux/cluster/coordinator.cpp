@@ -36,6 +36,20 @@ void for_rows(const PixelBounds& film, const PixelBounds& tile, const F& f) {
           offset);
 }
 
+// Calls f(part) for what the pixels of a tile hold, in the order of messages: rows of pixels, then of sums of layers, then
+// of buckets.
+template <typename AnyFilm, typename F>
+void for_contents(AnyFilm& film, const PixelBounds& tile, const F& f) {
+    const auto rows = [&](auto all, std::size_t per_pixel) {
+        for_rows(film.bounds(), tile, [&](std::size_t first, std::size_t count, std::size_t) {
+            f(all.subspan(first * per_pixel, count * per_pixel));
+        });
+    };
+    rows(film.pixels(), 1);
+    rows(film.layer_sums(), film.layers().sums());
+    rows(film.buckets(), film.buckets_per_pixel());
+}
+
 } // namespace
 
 Coordinator::Coordinator(Mailbox& mailbox, const PixelBounds& crop, const CoordinatorSettings& settings,
@@ -184,16 +198,8 @@ void Coordinator::assign(int rank, int tile, std::vector<std::uint8_t>& message)
     }
     ByteWriter out;
     out.put(a);
-    if (a.pixels == Assignment::Pixels::follow) {
-        for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
-            out.put_all(pixels.subspan(first, count));
-        });
-        const std::size_t sums = state_->film.layers().sums();
-        const std::span<const double> layer_sums = std::as_const(state_->film).layer_sums();
-        for_rows(film, bounds, [&](std::size_t first, std::size_t count, std::size_t) {
-            out.put_all(layer_sums.subspan(first * sums, count * sums));
-        });
-    }
+    if (a.pixels == Assignment::Pixels::follow)
+        for_contents(std::as_const(state_->film), bounds, [&](auto part) { out.put_all(part); });
     if (a.target_samples == Assignment::TargetSamples::uniform) {
         out.put(*uniform_target_);
     } else if (a.target_samples == Assignment::TargetSamples::each) {
@@ -233,6 +239,7 @@ void Coordinator::handle(const Message& message) {
         [[fallthrough]];
     case protocol::splats:
     case protocol::splat_counts:
+    case protocol::bias:
         if (rank.gathering) rank.staged.push_back(message);
         return;
     case protocol::gathered:
@@ -266,6 +273,14 @@ void Coordinator::take_staged(Rank& rank) {
 void Coordinator::take_splats(const Message& message) {
     ByteReader in(message.bytes);
     SplatFilm& splats = *state_->splats;
+    if (message.tag == protocol::bias) {
+        SplatFilm& open = state_->bias.value().open();
+        SplatFilm part(open.bounds());
+        in.get_all(part.sums());
+        const auto counts = in.get<protocol::SplatCounts>();
+        part.set_counts(counts.bad, counts.overflows);
+        return open.merge(part);
+    }
     if (message.tag == protocol::splat_counts) {
         const auto counts = in.get<protocol::SplatCounts>();
         splats.set_counts(splats.bad() + counts.bad, splats.overflows() + counts.overflows);
@@ -302,7 +317,6 @@ void Coordinator::take_report(const protocol::TaskReport& report) {
 }
 
 void Coordinator::take_tiles(const Message& message) {
-    const std::span<Pixel> pixels = state_->film.pixels();
     for (ByteReader in(message.bytes); !in.at_end();) {
         const auto header = in.get<protocol::TilePixelsHeader>();
         Tile& t = tiles_.at(header.tile);
@@ -314,13 +328,7 @@ void Coordinator::take_tiles(const Message& message) {
         // Does not report the same ranks twice.
         samples_ -= std::min(samples_, tally.samples);
         something_done_ = something_done_ || tally.samples > 0;
-        for_rows(state_->film.bounds(), bounds, [&](std::size_t first, std::size_t count, std::size_t) {
-            in.get_all(pixels.subspan(first, count));
-        });
-        const std::size_t sums = state_->film.layers().sums();
-        for_rows(state_->film.bounds(), bounds, [&](std::size_t first, std::size_t count, std::size_t) {
-            in.get_all(state_->film.layer_sums().subspan(first * sums, count * sums));
-        });
+        for_contents(state_->film, bounds, [&](auto part) { in.get_all(part); });
         t.home = true;
         if (t.wanted_by == TileSchedule::no_rank) continue;
         std::vector<std::uint8_t> assignment;

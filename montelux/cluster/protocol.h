@@ -23,6 +23,7 @@ enum Tag : int {
     tiles,          // TilePixels, one after another
     splats,         // for each tile that has any: its number, and its sums of the SplatFilm, row by row
     splat_counts,   // SplatCounts, after the splats
+    bias,           // the sums of MergingBias::open(), and SplatCounts
     gathered,       // after the last of what `gather` asked for: its number
     paths,          // a number: how many paths of the groups in hand were taken
     replicate_part, // ReplicatePart, and as many ChainReplicate::PixelValues
@@ -55,7 +56,8 @@ struct TaskReport {
     double luminance = 0, squared_error = 0;
 };
 
-// Followed by as many pixels as the tile has, and FilmLayers::sums() numbers for each.
+// Followed by as many pixels as the tile has, and for each FilmLayers::sums() numbers and Film::buckets_per_pixel()
+// BucketMoments. So are the pixels that follow an assignment.
 struct TilePixelsHeader {
     std::uint32_t tile = 0, pixels = 0;
     // The TileTally since the tile was last sent follows too, before the pixels.

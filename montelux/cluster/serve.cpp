@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <optional>
 #include <thread>
 
 #include "montelux/cluster/chain_worker.h"
@@ -55,8 +56,13 @@ void serve_render(const Renderer& renderer, Mailbox& mailbox, const ServeSetting
             ChainWorker worker(*takers.chains, settings.threads, mailbox);
             return serve(worker, mailbox, settings);
         }
-        TileWorker worker(takers.tiles, tiles_of(renderer.description().film.crop, settings.tile_size),
-                          settings.threads, mailbox, &takers.context);
+        const SceneDescription& description = renderer.description();
+        std::optional<MergingPasses> merging;
+        if (takers.context.merges())
+            merging.emplace(takers.context, renderer.accelerator(), *description.integrator.merging,
+                            description.film.crop);
+        TileWorker worker(takers.tiles, tiles_of(description.film.crop, settings.tile_size), settings.threads,
+                          mailbox, TileWorker::OwnPreparation{takers.context, merging ? &*merging : nullptr});
         serve(worker, mailbox, settings);
     });
 }

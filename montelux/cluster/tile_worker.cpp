@@ -17,12 +17,12 @@ using Clock = std::chrono::steady_clock;
 } // namespace
 
 TileWorker::TileWorker(const TileRenderer& renderer, std::vector<PixelBounds> tiles, int threads,
-                       Mailbox& mailbox, SampleContext* context)
-    : renderer_(renderer), bounds_(std::move(tiles)), mailbox_(mailbox), context_(context),
-      tiles_(bounds_.size()), last_sent_(Clock::now()) {
-    if (renderer.makes_splats())
-        splats_.emplace(
-            PixelBounds{bounds_.front().x0, bounds_.front().y0, bounds_.back().x1, bounds_.back().y1});
+                       Mailbox& mailbox, std::optional<OwnPreparation> own)
+    : renderer_(renderer), bounds_(std::move(tiles)), mailbox_(mailbox), own_(own), tiles_(bounds_.size()),
+      last_sent_(Clock::now()) {
+    const PixelBounds film{bounds_.front().x0, bounds_.front().y0, bounds_.back().x1, bounds_.back().y1};
+    if (renderer.makes_splats()) splats_.emplace(film);
+    if (renderer.merges()) bias_.emplace(film);
     for (int t = 0; t < threads; ++t) threads_.emplace_back([this] { run_thread(); });
     ByteWriter out;
     out.put(static_cast<std::int32_t>(threads));
@@ -67,15 +67,19 @@ protocol::TaskReport TileWorker::perform(const Task& task) {
     Tile& tile = *tiles_[task.tile];
     const PixelBounds& bounds = bounds_[task.tile];
     const auto stride = static_cast<std::size_t>(bounds.width());
+    if (own_ && own_->merging != nullptr) prepare_pass(tile);
     TileTally tally;
     auto stop = [this] { return stop_.requested(); };
     renderer_.render({.bounds = bounds,
                       .pixels = tile.pixels.data(),
                       .stride = stride,
+                      .buckets = tile.buckets.empty() ? nullptr : tile.buckets.data(),
+                      .bucket_count = renderer_.buckets_per_pixel(),
                       .target_samples = tile.target_samples.data(),
                       .target_stride = stride,
                       .layer_sums = tile.layer_sums.data(),
                       .splats = splats_ ? &*splats_ : nullptr,
+                      .bias = bias_ ? &*bias_ : nullptr,
                       .most = task.step},
                      tally, stop, stop);
     tile.tally.merge(tally);
@@ -89,6 +93,25 @@ protocol::TaskReport TileWorker::perform(const Task& task) {
         report.squared_error += std::pow(luminance_error(p), 2);
     }
     return report;
+}
+
+// The light map of the samples that the tile lacks, all of the same index. The first thread that needs it makes it, on
+// all threads, while the others wait for it.
+void TileWorker::prepare_pass(Tile& tile) {
+    std::size_t lacking = 0;
+    while (lacking < tile.pixels.size() && tile.pixels[lacking].samples() >= tile.target_samples[lacking])
+        ++lacking;
+    if (lacking == tile.pixels.size()) return;
+    const std::uint64_t index = renderer_.order().index(tile.pixels[lacking].samples());
+    RenderReport report;
+    std::mutex of_report;
+    {
+        std::lock_guard lock(pass_mutex_);
+        with_threads(static_cast<int>(threads_.size()),
+                     [&] { own_->merging->prepare(index, report, of_report, &stop_); });
+    }
+    tile.tally.rays.merge(report.rays);
+    tile.tally.cpu_seconds += report.cpu_seconds;
 }
 
 void TileWorker::handle(const Message& message) {
@@ -125,9 +148,8 @@ void TileWorker::handle(const Message& message) {
 void TileWorker::take_guide(const Message& message) {
     guide_.take(message, mailbox_, [this](std::shared_ptr<const GuidingField> guide) {
         std::lock_guard lock(mutex_);
-        if (context_ == nullptr || busy_ > 0 || !tasks_.empty())
-            throw Error("guide", "it came while samples are taken");
-        context_->set_guide(std::move(guide));
+        if (!own_ || busy_ > 0 || !tasks_.empty()) throw Error("guide", "it came while samples are taken");
+        own_->context.set_guide(std::move(guide));
     });
 }
 
@@ -143,9 +165,11 @@ void TileWorker::assign(const Message& message) {
             Tile& fresh = *tiles_[a.tile];
             fresh.pixels.resize(count);
             fresh.layer_sums.resize(count * renderer_.layers().sums());
+            fresh.buckets.resize(count * renderer_.buckets_per_pixel());
             if (a.pixels == Assignment::Pixels::follow) {
                 in.get_all(std::span<Pixel>(fresh.pixels));
                 in.get_all(std::span<double>(fresh.layer_sums));
+                in.get_all(std::span<BucketMoments>(fresh.buckets));
             }
         }
         Tile& tile = known(a.tile);
@@ -173,6 +197,7 @@ void TileWorker::send_tiles(std::span<const std::uint32_t> which) {
         out.put(tile.tally);
         out.put_all(std::span<const Pixel>(tile.pixels));
         out.put_all(std::span<const double>(tile.layer_sums));
+        out.put_all(std::span<const BucketMoments>(tile.buckets));
         tile.tally = {};
         tile.changed = false;
         if (out.size() < message_bytes) continue;
@@ -209,8 +234,18 @@ void TileWorker::send_splats() {
     out.put(protocol::SplatCounts{splats_->bad(), splats_->overflows()});
     mailbox_.send(leading_rank, protocol::splat_counts, out.take());
     splats_->clear();
+    if (bias_) send_bias();
     // The leader ends replicates when it has all splats, and sends the pixels anew.
     for (std::unique_ptr<Tile>& tile : tiles_) tile.reset();
+}
+
+void TileWorker::send_bias() {
+    SplatFilm& open = bias_->open();
+    ByteWriter out;
+    out.put_all(std::as_const(open).sums());
+    out.put(protocol::SplatCounts{open.bad(), open.overflows()});
+    mailbox_.send(leading_rank, protocol::bias, out.take());
+    open.clear();
 }
 
 void TileWorker::report() {

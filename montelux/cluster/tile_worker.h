@@ -17,6 +17,8 @@
 #include "montelux/cluster/rank_worker.h"
 #include "montelux/film/splat_film.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/render/merging_bias.h"
+#include "montelux/render/merging_passes.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/render/tile_renderer.h"
 
@@ -26,12 +28,18 @@ namespace montelux {
 //
 // Splats of light paths are summed over all tiles of the worker, since those of a single one may reach the whole film.
 // They are sent with the pixels of all these tiles, and the leader takes both or neither.
+//
+// Where paths merge, each rank traces all light paths of a pass.
 class TileWorker final : public RankWorker {
   public:
-    // Everything must outlive it. Tells the leader, rank 0, that it is ready. `context`, the renderer's, gets the guide that
-    // the leader sends; null: of the leader's own rank.
+    // What the leader's own rank gets otherwise: from the render loop.
+    struct OwnPreparation {
+        SampleContext& context;           // the renderer's; gets the guide that the leader sends
+        MergingPasses* merging = nullptr; // where paths merge: the light maps of their passes
+    };
+    // Everything must outlive it. Tells the leader, rank 0, that it is ready. `own`: of all ranks but the leader's.
     TileWorker(const TileRenderer& renderer, std::vector<PixelBounds> tiles, int threads, Mailbox& mailbox,
-               SampleContext* context = nullptr);
+               std::optional<OwnPreparation> own = {});
     ~TileWorker() override;
     TileWorker(const TileWorker&) = delete;
     TileWorker& operator=(const TileWorker&) = delete;
@@ -44,7 +52,8 @@ class TileWorker final : public RankWorker {
   private:
     struct Tile {
         std::vector<Pixel> pixels;
-        std::vector<double> layer_sums; // FilmLayers::sums() for each
+        std::vector<double> layer_sums;     // FilmLayers::sums() for each
+        std::vector<BucketMoments> buckets; // of a spectral film
         std::vector<std::uint32_t> target_samples;
         TileTally tally; // since the pixels were last sent
         bool changed = false;
@@ -60,15 +69,19 @@ class TileWorker final : public RankWorker {
     void send_tiles(std::span<const std::uint32_t> which);
     void finish_gathering();
     void send_splats();
+    void send_bias();
+    void prepare_pass(Tile& tile);
     Tile& known(std::uint32_t tile);
 
     const TileRenderer& renderer_;
     std::vector<PixelBounds> bounds_;
     Mailbox& mailbox_;
-    SampleContext* context_;
+    std::optional<OwnPreparation> own_;
     GuideReceiver guide_;
     std::vector<std::unique_ptr<Tile>> tiles_; // those that are held
     std::optional<SplatFilm> splats_;          // of all samples since the last gathering, if they bring any
+    std::optional<MergingBias> bias_;          // the same, where paths merge
+    std::mutex pass_mutex_;                    // of the preparation of a pass
     std::uint32_t gathering_number_ = 0;
     bool gathering_ = false, ended_ = false;
     std::chrono::steady_clock::time_point last_sent_;

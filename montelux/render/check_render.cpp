@@ -102,14 +102,4 @@ void check_render(const SceneDescription& d, const SamplerSettings& sampler, con
     if (traces_light(d.integrator.method)) check_light_tracing(d, target);
 }
 
-void check_sharing(const SceneDescription& d) {
-    if (d.film.spectral)
-        throw Error("film",
-                    "a spectral film cannot be rendered by several processes: they exchange RGB alone");
-    if (merges(d.integrator))
-        throw Error("merging",
-                    "paths that merge cannot be rendered by several processes: the light paths of a "
-                    "pass are in the memory of one");
-}
-
 } // namespace montelux

@@ -13,7 +13,5 @@ SamplerSettings sampler_of(const SceneDescription& description);
 // Throws Error, which says what to choose instead.
 void check_render(const SceneDescription& description, const SamplerSettings& sampler,
                   const RenderTarget& target);
-// Of a render that is shared by several processes.
-void check_sharing(const SceneDescription& description);
 
 } // namespace montelux

@@ -74,7 +74,8 @@ class RenderLoop {
                     next_target_samples(state_, renderer_.sampler(), renderer_.target());
                 if (target_samples.empty()) return end(RenderStop::samples);
                 state_.target_samples = std::move(target_samples);
-                join_rounds();
+                if (control_.executor != nullptr && every_pixel_seen_)
+                    join_rounds(state_, order_, renderer_.target());
                 progress_.round_begins();
                 std::ranges::fill(finished_, char{0});
                 ++round_;
@@ -104,24 +105,6 @@ class RenderLoop {
     bool pause_is_due() const { return checkpoint_is_due() || out_of_time(); }
     void pause_if_due() {
         if (pause_is_due()) pause_ = true;
-    }
-    // With an executor, ends of rounds are expensive. If no decision depends on the error, one round takes
-    // all remaining samples after the first one; so does a pilot. Splats belong to one pass.
-    void join_rounds() {
-        const RenderTarget& target = renderer_.target();
-        if (control_.executor == nullptr || !every_pixel_seen_) return;
-        if (state_.splats) {
-            const std::uint64_t points = order_.replicate_size();
-            const std::uint64_t end = (state_.target_samples.front() + points - 1) / points * points;
-            std::ranges::fill(state_.target_samples,
-                              static_cast<std::uint32_t>(std::min(end, order_.share())));
-            return;
-        }
-        const std::uint64_t pilot = std::min(pilot_of(order_), order_.share());
-        if (target.adaptive && state_.target_samples.front() < pilot)
-            std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(pilot));
-        if (!target.adaptive && !(target.error > 0))
-            std::ranges::fill(state_.target_samples, static_cast<std::uint32_t>(order_.share()));
     }
     // Pixels of a restored film may lack samples of the current round, as after an interrupted loop.
     bool round_is_done() const {
@@ -188,11 +171,13 @@ class RenderLoop {
             control_.cancel);
     }
 
+    std::uint32_t fewest_samples() const {
+        const std::span<const Pixel> pixels = state_.film.pixels();
+        return std::ranges::min_element(pixels, {}, &Pixel::samples)->samples();
+    }
     // Sample by sample: those of one index merge.
     void take_merging_passes() {
-        std::uint32_t begin = state_.target_samples.front();
-        for (const Pixel& p : state_.film.pixels()) begin = std::min(begin, p.samples());
-        for (std::uint32_t n = begin; n < state_.target_samples.front() && !pause_; ++n) {
+        for (std::uint32_t n = fewest_samples(); n < state_.target_samples.front() && !pause_; ++n) {
             passes_->prepare(order_.index(n), state_.report, mutex_, control_.cancel);
             if (cancelled()) return;
             render_tiles(std::vector<std::uint32_t>(state_.target_samples.size(), n + 1));
@@ -221,6 +206,22 @@ class RenderLoop {
         for (std::size_t t = 0; t < tiles_.size(); ++t) report_if_finished(t);
     }
 
+    // The same, of several processes: each makes the light map of an index for itself.
+    void share_merging_passes(const RoundWatch& watch) {
+        const std::vector<std::uint32_t> targets = state_.target_samples;
+        for (std::uint32_t n = fewest_samples(); n < targets.front(); ++n) {
+            const auto prepare = [&] {
+                passes_->prepare(order_.index(n), state_.report, mutex_, control_.cancel);
+            };
+            control_.executor->meanwhile(prepare, [] {});
+            if (cancelled()) break;
+            std::ranges::fill(state_.target_samples, n + 1);
+            control_.executor->run(tile_renderer_, state_, watch);
+            if (!round_is_done() || control_.executor->failed() || watch.stop(true)) break;
+        }
+        state_.target_samples = targets;
+    }
+
     void let_executor_take_samples() {
         LiveFilm* const live = control_.live;
         const RoundWatch watch{[&](bool something_done) {
@@ -234,7 +235,10 @@ class RenderLoop {
                                control_.cancel};
         {
             const auto held = live != nullptr ? live->hold_all() : std::unique_lock<std::timed_mutex>();
-            control_.executor->run(tile_renderer_, state_, watch);
+            if (passes_)
+                share_merging_passes(watch);
+            else
+                control_.executor->run(tile_renderer_, state_, watch);
         }
         progress_.set_samples_beyond(0);
         for (std::size_t t = 0; t < tiles_.size() && !state_.splats; ++t) report_if_finished(t);

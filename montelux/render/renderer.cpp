@@ -50,7 +50,6 @@ void Renderer::serve(const std::function<void(const SampleTakers&)>& work) const
 }
 
 void Renderer::render(RenderState& state, const RenderControl& control) const {
-    if (control.executor != nullptr) check_sharing(description_);
     SampleContext context(description_, sampler_, scene(), camera_);
     if (description_.integrator.guiding == Guiding::on && !context.can_be_guided())
         throw Error("guiding",

@@ -219,4 +219,19 @@ std::vector<std::uint32_t> neyman_allocation(const Film& film, const SampleOrder
     return target_samples;
 }
 
+void join_rounds(RenderState& state, const SampleOrder& order, const RenderTarget& target) {
+    const std::uint32_t next = state.target_samples.front();
+    const auto take = [&](std::uint64_t samples) {
+        std::ranges::fill(state.target_samples, static_cast<std::uint32_t>(std::min(samples, order.share())));
+    };
+    if (state.splats) {
+        const std::uint64_t points = order.replicate_size();
+        take((next + points - 1) / points * points);
+    } else if (target.adaptive) {
+        if (next < std::min(pilot_of(order), order.share())) take(pilot_of(order));
+    } else if (!(target.error > 0)) {
+        take(order.share());
+    }
+}
+
 } // namespace montelux

@@ -42,6 +42,11 @@ std::uint64_t pilot_of(const SampleOrder& order);
 std::vector<std::uint32_t> next_target_samples(const RenderState& state, const SamplerSettings& sampler,
                                                const RenderTarget& target);
 
+// Of a render that several processes share, whose ends of rounds are expensive: lets the next round go further, once every
+// pixel has a sample. If no decision depends on the error it takes all remaining samples, and so does that of a pilot.
+// With splats it ends with the pass.
+void join_rounds(RenderState& state, const SampleOrder& order, const RenderTarget& target);
+
 // The adaptive part of the above: no count decreases; empty if no pixel may get more.
 //
 // The mean squared error over pixels of n_p samples and variances v_p is least, for a given sum of n_p, where

@@ -67,6 +67,10 @@ class SampleContext {
     // numbers of the film's layers (FilmLayers::values() for each sample) are in the batch.
     void take(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<Result> results) const;
     const FilmLayers& layers() const { return layers_.layers(); }
+    // Of a spectral film; else 0.
+    std::size_t buckets_per_pixel() const {
+        return buckets_ ? static_cast<std::size_t>(buckets_->count()) : 0;
+    }
     // Whether samples bring splats: Batch::film_splats, those of sample i in Batch::splats_of(i).
     bool makes_splats() const { return std::holds_alternative<BidirectionalIntegrator>(integrator_); }
     const PixelFilterSampler& filter() const { return filter_; }

@@ -64,7 +64,9 @@ class TileRenderer {
 
     const SampleOrder& order() const { return order_; }
     const FilmLayers& layers() const { return context_.layers(); }
+    std::size_t buckets_per_pixel() const { return context_.buckets_per_pixel(); }
     bool makes_splats() const { return context_.makes_splats(); }
+    bool merges() const { return context_.merges(); }
 
     // Adds its statistics to `tally`. Stops early when stop(), called before each pixel, or check(), called
     // after each full batch of samples, returns true. Pixels are always consistent: a batch is added whole.

@@ -110,6 +110,59 @@ TEST(SharedLightPaths, LostRanksLeaveNoSplatsAndNoSamples) {
     }
 }
 
+SceneDescription merging_picture(SamplerKind sampler, std::uint32_t spp) {
+    SceneDescription d = picture_of(IntegratorKind::bidirectional, sampler, spp);
+    d.integrator.merging = MergingSettings{.radius = 0.1f};
+    return d;
+}
+void expect_equal_bias(const RenderState& shared, const RenderState& whole) {
+    ASSERT_TRUE(shared.bias && whole.bias);
+    EXPECT_EQ(shared.bias->passes(), whole.bias->passes());
+    const auto same = [](const MergingBias::Cell& a, const MergingBias::Cell& b) {
+        return a.sum == b.sum && a.squares == b.squares;
+    };
+    EXPECT_TRUE(std::ranges::equal(shared.bias->cells(), whole.bias->cells(), same));
+    EXPECT_EQ(shared.report.merging.bias, whole.report.merging.bias);
+    EXPECT_NE(whole.report.merging.bias, 0);
+    EXPECT_EQ(shared.report.merging.last_radius, whole.report.merging.last_radius);
+}
+
+TEST(SharedMerging, AnyNumberOfRanksGivesTheSameBits) {
+    for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol})
+        for (const RenderTarget& target : {RenderTarget{}, RenderTarget{.error = 0.3}}) {
+            const SceneDescription d = merging_picture(sampler, 18);
+            const RenderState whole = rendered(d, target);
+            for (const int ranks : {1, 3}) {
+                RenderState state(d);
+                render_on(ranks, d, target, state);
+                expect_equal(state, whole, "ranks");
+                expect_equal_bias(state, whole);
+            }
+        }
+}
+
+TEST(SharedMerging, InterruptedRendersEndWithTheSameBits) {
+    const SceneDescription d = merging_picture(SamplerKind::sobol, 40);
+    int stops = 0, within_passes = 0;
+    const RenderState whole = rendered(d), state = interrupted(d, 3000, stops, within_passes);
+    expect_equal(state, whole, "interrupted");
+    expect_equal_bias(state, whole);
+    EXPECT_GE(stops, 3);
+    EXPECT_GT(within_passes, 0);
+}
+
+TEST(SharedMerging, LostRanksLeaveNoSplatsAndNoSamples) {
+    const SceneDescription d = merging_picture(SamplerKind::sobol, 64);
+    const RenderState whole = rendered(d);
+    for (const protocol::Tag last : {protocol::tiles, protocol::splat_counts, protocol::bias}) {
+        RenderState saved = render_until_lost(d, last, 3);
+        EXPECT_LT(saved.report.samples, whole.report.samples);
+        render_on(2, d, {}, saved);
+        expect_equal(saved, whole, "lost");
+        expect_equal_bias(saved, whole);
+    }
+}
+
 TEST(SharedChains, AnyNumberOfRanksGivesTheSameBits) {
     for (const RenderTarget& target :
          {RenderTarget{}, RenderTarget{.error = 0.25}, RenderTarget{.slice = {1, 3}}}) {

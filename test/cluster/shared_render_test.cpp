@@ -67,6 +67,30 @@ TEST(SharedRender, LayersHaveTheSameBits) {
 
 // Interrupted after some thousand samples and resumed by another number of ranks, none of which knows the
 // pixels.
+TEST(SharedRender, SpectralFilmsHaveTheSameBits) {
+    SceneDescription d = mixed_scene(16, 22, 18).description;
+    d.film.spectral = SpectralSettings{.buckets = 6};
+    RenderState whole(d);
+    Renderer(d).render(whole);
+    const auto same = [](const BucketMoments& a, const BucketMoments& b) {
+        return a.open == b.open && a.mean == b.mean && a.m2 == b.m2;
+    };
+    for (const int ranks : {1, 3}) {
+        RenderState state(d);
+        // Ends of rounds send tiles with samples to other ranks.
+        RenderControl control;
+        control.checkpoint_seconds = 0.001;
+        control.checkpoint = [](const RenderState&) {};
+        render_on(ranks, d, {}, state, control);
+        EXPECT_EQ(differing(state.film, whole.film), 0) << ranks;
+        EXPECT_TRUE(std::ranges::equal(std::as_const(state.film).buckets(),
+                                       std::as_const(whole.film).buckets(), same))
+            << ranks;
+    }
+    EXPECT_TRUE(std::ranges::any_of(std::as_const(whole.film).buckets(),
+                                    [](const BucketMoments& b) { return b.m2 > 0; }));
+}
+
 TEST(SharedRender, InterruptedRendersEndWithTheSameBits) {
     for (bool adaptive : {false, true}) {
         const SceneBuilder b = scene(SamplerKind::independent, 100);
