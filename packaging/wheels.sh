@@ -36,6 +36,9 @@ for python in ${PYTHONS:-$debian python3.10 python3.11 python3.12}; do
 done
 [ "$built" != " " ] || fail "no Python with headers was found"
 for wheel in build/wheels-raw/*.whl; do
+    case $wheel in # the tag says which Pythons may install it, the name of the extension which of them import it
+    *-abi3-*) $debian -m zipfile -l "$wheel" | grep -q '_core\.abi3\.so' || fail "$wheel has no extension of the stable ABI" ;;
+    esac
     LD_LIBRARY_PATH=$(dirname "$(find "$embree" -name 'libembree*.so' | head -n 1)") PATH="$PWD/$tools/bin:$PATH" \
         $tools/bin/auditwheel repair --strip --plat auto --wheel-dir $out "$wheel" 2>build/wheels-raw/auditwheel.log ||
         { cat build/wheels-raw/auditwheel.log && fail "auditwheel could not repair $wheel"; }

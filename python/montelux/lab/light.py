@@ -14,7 +14,7 @@ from ._number import Number
 
 def scene(name: str) -> Any:
     """A scene of the lab, as it was read."""
-    with resources.as_file(resources.files(__package__).joinpath("scenes", f"{name}.pbrt")) as path:
+    with resources.as_file(resources.files(__package__) / "scenes" / f"{name}.pbrt") as path:
         return montelux.load(path)
 
 
