@@ -16,11 +16,11 @@ import sys
 import tempfile
 
 METHODS = {
-    "path": [],
-    "path, guided": ["--guiding", "on"],
-    "path, guided auto": ["--guiding", "auto"],
+    "path": ["--integrator", "path"],
+    "guided": ["--integrator", "path", "--guiding", "on"],
+    "guided-auto": ["--integrator", "path", "--guiding", "auto"],
     "bidirectional": ["--integrator", "bidirectional"],
-    "bidirectional, merging": ["--integrator", "bidirectional", "--merging", "auto"],
+    "merging": ["--integrator", "bidirectional", "--merging", "auto"],
     "metropolis": ["--integrator", "metropolis"],
     "auto": ["--integrator", "auto"],
 }
@@ -35,14 +35,19 @@ def main() -> int:
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--set-aside", type=float, default=0.1, help="per cent of the pixels, noisiest in the reference")
     parser.add_argument("--options", default="", help="more options of every render, such as '--resolution 200x112'")
+    parser.add_argument("--methods", default=",".join(METHODS), help="of these, separated by commas")
     parser.add_argument("--keep", help="a folder for the pictures")
     arguments = parser.parse_args()
+    names = arguments.methods.split(",")
+    if unknown := [name for name in names if name not in METHODS]:
+        parser.error(f"there is no method '{unknown[0]}'; expected some of {', '.join(METHODS)}")
     folder = pathlib.Path(arguments.keep or tempfile.mkdtemp())
     folder.mkdir(parents=True, exist_ok=True)
     first = None
-    print("| method | samples per pixel | relMSE | path tracing's over it |\n|---|---|---|---|")
-    for name, options in METHODS.items():
-        picture = folder / (name.replace(", ", "-").replace(" ", "-") + ".exr")
+    print("| method | samples per pixel | relMSE | first one's over it |\n|---|---|---|---|")
+    for name in names:
+        options = METHODS[name]
+        picture = folder / f"{name}.exr"
         render = subprocess.run(
             [arguments.program, "render", arguments.scene, "--time", str(arguments.seconds), "--spp", "1000000",
              "--threads", str(arguments.threads), "--quiet", "-o", str(picture), *arguments.options.split(), *options],
