@@ -164,6 +164,8 @@ void Coordinator::deal() {
             if (t.holder != r && t.holder != TileSchedule::no_rank) ++moved_tiles_;
             if (t.home || t.holder == r) {
                 assign(r, *pick, message);
+                if (message.size() >= message_bytes)
+                    roster_.send(r, protocol::assign, std::exchange(message, {}));
                 continue;
             }
             t.wanted_by = r;

@@ -59,8 +59,10 @@ void serve_render(const Renderer& renderer, Mailbox& mailbox, const ServeSetting
         const SceneDescription& description = renderer.description();
         std::optional<MergingPasses> merging;
         if (takers.context.merges())
-            merging.emplace(takers.context, renderer.accelerator(), *description.integrator.merging,
-                            description.film.crop);
+            prepare_and_beat(mailbox, [&] {
+                merging.emplace(takers.context, renderer.accelerator(), *description.integrator.merging,
+                                description.film.crop);
+            });
         TileWorker worker(takers.tiles, tiles_of(description.film.crop, settings.tile_size), settings.threads,
                           mailbox, TileWorker::OwnPreparation{takers.context, merging ? &*merging : nullptr});
         serve(worker, mailbox, settings);

@@ -55,8 +55,15 @@ void TileWorker::run_thread() {
         tasks_.pop_front();
         ++busy_;
         lock.unlock();
-        const protocol::TaskReport report = perform(task);
+        protocol::TaskReport report{.tile = task.tile};
+        std::exception_ptr failure;
+        try {
+            report = perform(task);
+        } catch (...) {
+            failure = std::current_exception();
+        }
         lock.lock();
+        if (failure) failure_ = failure;
         reports_.push_back(report);
         --busy_;
         reports_there_.notify_one();
@@ -253,6 +260,7 @@ void TileWorker::report() {
     bool idle = false;
     {
         std::lock_guard lock(mutex_);
+        if (failure_) std::rethrow_exception(std::exchange(failure_, nullptr));
         reports.swap(reports_);
         idle = busy_ == 0;
     }

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <cstdint>
 #include <deque>
+#include <exception>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -32,7 +33,7 @@ namespace montelux {
 // Where paths merge, each rank traces all light paths of a pass.
 class TileWorker final : public RankWorker {
   public:
-    // What the leader's own rank gets otherwise: from the render loop.
+    // Guide and light maps of ranks other than the leader's, which has them from the render loop.
     struct OwnPreparation {
         SampleContext& context;           // the renderer's; gets the guide that the leader sends
         MergingPasses* merging = nullptr; // where paths merge: the light maps of their passes
@@ -91,6 +92,7 @@ class TileWorker final : public RankWorker {
     std::deque<Task> tasks_;
     std::vector<protocol::TaskReport> reports_;
     int busy_ = 0;
+    std::exception_ptr failure_; // of a task
     bool closing_ = false;
 
     CancelFlag stop_; // tasks end as soon as they can

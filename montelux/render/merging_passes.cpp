@@ -137,6 +137,7 @@ void MergingPasses::prepare(std::uint64_t index, RenderReport& report, std::mute
                             const CancelFlag* cancel) {
     if (prepared_ == index) return;
     context_.set_light_map(nullptr); // frees the last one
+    prepared_ = ~std::uint64_t{0};
     std::vector<LightPaths> parts = trace(index, paths_, report, mutex, cancel);
     if (cancel != nullptr && cancel->requested()) return;
     const double begin = thread_cpu_seconds();

@@ -33,10 +33,13 @@ Index medium_at_light(const SceneView& scene, RayTracer& tracer, const Ray& ligh
         return true;
     };
     if (visit_surfaces(scene, tracer, light, separates)) return medium;
-    // All of the ray lies in one medium. A point of it off the light, whose own surface may separate media, is reached
-    // from the camera, whose medium is known.
+    // All of the ray lies in one medium. A point of it is reached from the camera, whose medium is known: off the light,
+    // whose own surface may separate media, and before the first surface, beyond which the way may lead past them.
     medium = scene.camera_medium;
-    const Vec3f way = light.o + light.d * std::max(length(light.o - camera.o), 1e-3f) - camera.o;
+    Hit hit;
+    const float distance =
+        tracer.intersect(light, hit) ? hit.t / 2 : std::max(length(light.o - camera.o), 1e-3f);
+    const Vec3f way = light.o + light.d * distance - camera.o;
     const float far = length(way);
     if (!(far > 0)) return medium;
     Ray out{camera.o, way / far, far};

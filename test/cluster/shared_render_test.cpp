@@ -65,10 +65,9 @@ TEST(SharedRender, LayersHaveTheSameBits) {
     }
 }
 
-// Interrupted after some thousand samples and resumed by another number of ranks, none of which knows the
-// pixels.
+// Interrupted and resumed by another number of ranks, which get the buckets with the pixels.
 TEST(SharedRender, SpectralFilmsHaveTheSameBits) {
-    SceneDescription d = mixed_scene(16, 22, 18).description;
+    SceneDescription d = mixed_scene(48, 22, 18).description;
     d.film.spectral = SpectralSettings{.buckets = 6};
     RenderState whole(d);
     Renderer(d).render(whole);
@@ -77,11 +76,16 @@ TEST(SharedRender, SpectralFilmsHaveTheSameBits) {
     };
     for (const int ranks : {1, 3}) {
         RenderState state(d);
-        // Ends of rounds send tiles with samples to other ranks.
+        CancelFlag cancel;
         RenderControl control;
+        control.cancel = &cancel;
         control.checkpoint_seconds = 0.001;
-        control.checkpoint = [](const RenderState&) {};
-        render_on(ranks, d, {}, state, control);
+        control.checkpoint = [&cancel](const RenderState& s) {
+            if (s.report.samples > 4000) cancel.request();
+        };
+        render_on(4 - ranks, d, {}, state, control);
+        EXPECT_TRUE(state.report.cancelled());
+        render_on(ranks, d, {}, state);
         EXPECT_EQ(differing(state.film, whole.film), 0) << ranks;
         EXPECT_TRUE(std::ranges::equal(std::as_const(state.film).buckets(),
                                        std::as_const(whole.film).buckets(), same))
@@ -91,6 +95,8 @@ TEST(SharedRender, SpectralFilmsHaveTheSameBits) {
                                     [](const BucketMoments& b) { return b.m2 > 0; }));
 }
 
+// Interrupted after some thousand samples and resumed by another number of ranks, none of which knows the
+// pixels.
 TEST(SharedRender, InterruptedRendersEndWithTheSameBits) {
     for (bool adaptive : {false, true}) {
         const SceneBuilder b = scene(SamplerKind::independent, 100);

@@ -94,6 +94,32 @@ std::vector<AgreementCase> fogs() {
     add_point_lamp(one_sided);
     add("open floor", one_sided);
 
+    // A room whose walls say nothing of media; the camera outside sees it through a pane that holds the fog back.
+    VolumeScene room;
+    const Index gray_wall = room.add(DiffuseMaterial{gray(0.6f)});
+    const auto wall = [&](Vec3d at, const Transform& turn) {
+        return room.add_mesh(square(Transform::translate(at) * turn * Transform::scale({2, 2, 2})),
+                             gray_wall);
+    };
+    wall({0, 0, 0}, Transform());
+    wall({0, 0, 4}, Transform::rotate(180, {1, 0, 0}));
+    wall({0, 2, 2}, Transform::rotate(90, {1, 0, 0}));
+    wall({-2, 0, 2}, Transform::rotate(90, {0, 1, 0}));
+    wall({2, 0, 2}, Transform::rotate(-90, {0, 1, 0}));
+    const Index gas = room.add_medium(fog(0.05f, 0.3f));
+    room.bound(room.add_mesh(square(Transform::translate({0, -2, 2}) * Transform::rotate(90, {1, 0, 0}) *
+                                    Transform::scale({2, 2, 2})),
+                             room.interface()),
+               gas, no_index);
+    const Index ceiling_lamp =
+        room.add_mesh(square(Transform::translate({0.3, 0.2, 3.9}) * Transform::rotate(180, {1, 0, 0}) *
+                             Transform::scale({0.5, 0.5, 1})),
+                      room.add(DiffuseMaterial{gray(0)}), 10);
+    room.bound(ceiling_lamp, no_index, gas);
+    room.look({0.2, -7, 2.2}, {0, 0, 1.9}, 30);
+    room.description.integrator.max_depth = 5;
+    add("room behind a pane", room);
+
     VolumeScene absorbing = corner_in(fog(0.2f, 0));
     add_box_lamp(absorbing);
     add("no scattering", absorbing);
