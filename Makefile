@@ -59,7 +59,7 @@ test-peers: build ## scenes of Mitsuba's documentation by both programs, pixel b
 	    $(if $(ONLY),--only $(ONLY)) $(if $(VARIANT),--variant $(VARIANT)) | tee $(PEERS)/result.md
 
 METHODS_OUT := build/test-methods
-test-methods: build ## guided, bidirectional, ... pictures beside path tracing's on 35 scenes (an hour of CPU; less with ONLY=pool,fog)
+test-methods: build ## guided, bidirectional, ... pictures beside path tracing's on 34 scenes (an hour of CPU; less with ONLY=pool,fog)
 	@mkdir -p $(METHODS_OUT) && rm -f $(METHODS_OUT)/result.json
 	python=$(LAB_PYTHON); test -x $$python || python=python3; \
 	$$python test/peers/methods_agreement.py $(BUILD)/montelux --json $(METHODS_OUT)/result.json \
