@@ -92,7 +92,9 @@ def test_without_a_driver_there_is_a_sentence():
 def test_a_gpu_agrees_with_numpy(method):
     try:
         montelux.integrate("x", (0, 1), "basic", evaluations=1000, device="cuda")
-    except montelux.Error as error:  # where there is a GPU, it works
+    except montelux.Error as error:
+        if not any(what in str(error) for what in ("there is no NVIDIA driver", "shows no GPU", "is not installed")):
+            raise  # what does not work on a machine that has it all is a failure
         pytest.skip(str(error))
     there = montelux.integrate(SOURCE, [(0, 1)] * 5, method, device="cuda", evaluations=2e6, seed=5)
     here = montelux.integrate(squares, [(0, 1)] * 5, method, evaluations=2e6, seed=5)

@@ -97,17 +97,22 @@ TEST(SharedLightPaths, InterruptedRendersEndWithTheSameBits) {
     }
 }
 
+// A rank falls silent after the third message of a kind: nothing of it counts, and a resumed render has the bits of `whole`.
+RenderState resumed_without(const SceneDescription& d, protocol::Tag last, const RenderState& whole) {
+    RenderState saved = render_until_lost(d, last, 3);
+    EXPECT_LT(saved.report.samples, whole.report.samples);
+    render_on(2, d, {}, saved);
+    expect_equal(saved, whole, "lost");
+    return saved;
+}
+
 // A rank falls silent within what it sends at the end of a round: its pixels without its splats, or both without the
 // end. Neither counts.
 TEST(SharedLightPaths, LostRanksLeaveNoSplatsAndNoSamples) {
     const SceneDescription d = picture_of(IntegratorKind::light_tracing, SamplerKind::sobol, 64);
     const RenderState whole = rendered(d);
-    for (const protocol::Tag last : {protocol::tiles, protocol::splats, protocol::splat_counts}) {
-        RenderState saved = render_until_lost(d, last, 3);
-        EXPECT_LT(saved.report.samples, whole.report.samples);
-        render_on(2, d, {}, saved);
-        expect_equal(saved, whole, "lost");
-    }
+    for (const protocol::Tag last : {protocol::tiles, protocol::splats, protocol::splat_counts})
+        resumed_without(d, last, whole);
 }
 
 SceneDescription merging_picture(SamplerKind sampler, std::uint32_t spp) {
@@ -154,13 +159,8 @@ TEST(SharedMerging, InterruptedRendersEndWithTheSameBits) {
 TEST(SharedMerging, LostRanksLeaveNoSplatsAndNoSamples) {
     const SceneDescription d = merging_picture(SamplerKind::sobol, 64);
     const RenderState whole = rendered(d);
-    for (const protocol::Tag last : {protocol::tiles, protocol::splat_counts, protocol::bias}) {
-        RenderState saved = render_until_lost(d, last, 3);
-        EXPECT_LT(saved.report.samples, whole.report.samples);
-        render_on(2, d, {}, saved);
-        expect_equal(saved, whole, "lost");
-        expect_equal_bias(saved, whole);
-    }
+    for (const protocol::Tag last : {protocol::tiles, protocol::splat_counts, protocol::bias})
+        expect_equal_bias(resumed_without(d, last, whole), whole);
 }
 
 TEST(SharedChains, AnyNumberOfRanksGivesTheSameBits) {

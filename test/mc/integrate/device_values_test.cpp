@@ -1,5 +1,6 @@
 // Integrals on a device. Its emulation runs the kernels' own source on the processor, so that everything but the GPU is
 // tested: points, values, sums and errors have the bits of the processor's.
+#include "test/mc/integrate/device_points.h"
 #include "test/mc/integrate/estimator_checks.h"
 #include "test/mc/integrate/integrate_testing.h"
 #include "test/mc/integrate/on_emulated_device.h"
@@ -26,59 +27,17 @@ namespace {
 
 const Method all_methods[] = {BasicMonteCarlo{}, Quasi{}, Vegas{}, VegasSobol{}, Adaptive{}};
 
-const std::string peak_source = "double integrand(int n, const double* x) {\n"
-                                "    double s = 0;\n"
-                                "    for (int d = 0; d < n; ++d) s += (x[d] - 0.3) * (x[d] - 0.3);\n"
-                                "    return exp(-20 * s);\n"
-                                "}\n";
-double peak_here(std::span<const double> x) {
-    double s = 0;
-    for (double v : x) s += (v - 0.3) * (v - 0.3);
-    return std::exp(-20 * s);
-}
 const std::string two_source = "void integrand(int, const double* x, int, double* y) {\n"
                                "    y[0] = x[0] * exp(-x[1]);\n"
                                "    y[1] = x[1] * x[1];\n"
                                "}\n";
 
 TEST_F(OnEmulatedDevice, RandomPointsHaveTheProcessorsBits) {
-    constexpr std::size_t n = 300;
-    for (const int dimensions : {1, 3, 4, 9}) {
-        DeviceSampler sampler(
-            compiled({.text = coordinates(dimensions), .components = dimensions}, dimensions));
-        for (const std::uint64_t first :
-             {std::uint64_t{0}, std::uint64_t{12345}, (std::uint64_t{1} << 32) - 100}) {
-            PointBuffer u(n, dimensions);
-            fill_random(u, 77, 5, first);
-            const DeviceSampler::Block block = sampler.random(hash_key(77, 5), 5, first, n, false);
-            for (int d = 0; d < dimensions; ++d)
-                for (std::size_t i = 0; i < n; ++i)
-                    ASSERT_EQ(block.values[static_cast<std::size_t>(d) * n + i], u(i, d)) << d << " " << i;
-        }
-    }
+    expect_random_points(Device::open("emulated"), 300);
 }
 
 TEST_F(OnEmulatedDevice, SobolPointsHaveTheProcessorsBits) {
-    constexpr std::size_t each = 130;
-    constexpr int dimensions = 7, replicates = 3;
-    const Evaluator g(integrand(coordinates(dimensions), dimensions, dimensions),
-                      Domain::unit_cube(dimensions));
-    const auto device = DeviceValues::of(g);
-    device->set_replicates(11, 4, replicates);
-    for (const std::uint64_t first :
-         {std::uint64_t{0}, std::uint64_t{1000}, (std::uint64_t{1} << 32) - each}) {
-        device->draw_sobol(first, each);
-        for (std::uint32_t r = 0; r < replicates; ++r) {
-            PointBuffer u(each, dimensions);
-            ScrambledSobol(dimensions, 11, 4 + r).fill(u, first);
-            ValueBuffer values(each, dimensions);
-            NonFiniteCount none;
-            device->read(r * each, values, {}, none);
-            for (int d = 0; d < dimensions; ++d)
-                for (std::size_t i = 0; i < each; ++i)
-                    ASSERT_EQ(std::as_const(values)(i, d), u(i, d)) << r << " " << d << " " << i;
-        }
-    }
+    expect_sobol_points(Device::open("emulated"), 130);
 }
 
 TEST_F(OnEmulatedDevice, EstimatesHaveTheProcessorsBitsForAHundredSeeds) {
