@@ -26,8 +26,9 @@ constexpr std::uint64_t first_paths = 1u << 16;
 constexpr double all_training = 1.0 / 6, trial = 1.0 / 30;
 // Guided paths are shaded one by one and look up densities: a ray of theirs takes so many times as long.
 constexpr double cost_of_guiding = 1.6;
-// Gain of a guide that is kept: the training is lost, and the estimate of the gain uncertain.
-constexpr double least_gain = 1.3;
+// Gain of a guide that is kept: the training is lost, and the estimate of the gain uncertain. The first guide has learned
+// without one: the next will be better.
+constexpr double least_gain = 1.3, least_gain_of_first = 1.1;
 // Guesses before the first round, of its records per sample.
 constexpr double first_records_per_sample = 6;
 // No path counts as more than the root of this many times what its pixel expects: the rarest ones would decide alone.
@@ -37,6 +38,7 @@ constexpr double most_relative_square = 1e5;
 struct TrainingRound {
     std::vector<std::vector<GuidingRecord>> records; // of each tile
     std::vector<double> sums, squares;               // of the radiance
+    std::vector<double> unguided_squares;            // as they would be without the guide
     std::uint32_t samples = 0;                       // per pixel
     std::uint64_t rays = 0;
     double cpu_seconds = 0;
@@ -59,6 +61,7 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
     round.records.resize(tiles.size());
     round.sums.resize(pixel_count(plan.bounds));
     round.squares.resize(round.sums.size());
+    round.unguided_squares.resize(round.sums.size());
     struct Cost {
         std::uint64_t rays = 0;
         double cpu_seconds = 0;
@@ -78,10 +81,10 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
             RayTracer tracer(accelerator);
             std::vector<SampleContext::Key> keys;
             std::vector<std::size_t> places;
-            std::vector<float> radiance(training_batch);
+            std::vector<SampleContext::Lesson> lessons(training_batch);
             const auto take = [&] {
                 context.teach(
-                    tracer, keys, batch, radiance,
+                    tracer, keys, batch, lessons,
                     [&](std::size_t i) {
                         const SampleContext::Key& key = keys[i];
                         const std::uint64_t h = hash_key(0x7061746873u, static_cast<std::uint64_t>(key.x),
@@ -90,9 +93,10 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
                     },
                     records);
                 for (std::size_t i = 0; i < keys.size(); ++i) {
-                    const double v = double(radiance[i]);
+                    const double v = double(lessons[i].radiance);
                     round.sums[places[i]] += v;
                     round.squares[places[i]] += v * v;
+                    round.unguided_squares[places[i]] += lessons[i].square_without_guide;
                 }
                 keys.clear();
                 places.clear();
@@ -151,11 +155,12 @@ std::vector<float> expected_radiance(const TrainingRound& round, const PixelBoun
 }
 
 // Mean over the pixels of the second moment of a sample, over the square of what the pixel expects.
-double relative_second_moment(const TrainingRound& round, const std::vector<float>& expected) {
+double relative_second_moment(const std::vector<double>& squares, std::uint32_t samples,
+                              const std::vector<float>& expected) {
     double sum = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
         const double e = double(expected[i]);
-        if (e > 0) sum += std::min(round.squares[i] / round.samples / (e * e), most_relative_square);
+        if (e > 0) sum += std::min(squares[i] / samples / (e * e), most_relative_square);
     }
     return sum / static_cast<double>(expected.size());
 }
@@ -196,10 +201,10 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
     const std::uint64_t pixels = pixel_count(plan.bounds);
     // Of small pictures several for each pixel; not so many that three rounds take more than their share.
     auto samples = static_cast<std::uint32_t>(
-        std::clamp(all_training / 7 * static_cast<double>(plan.samples), 1.0,
+        std::clamp((automatic ? trial : all_training) / 7 * static_cast<double>(plan.samples), 1.0,
                    std::max(1.0, static_cast<double>(first_paths) / static_cast<double>(pixels))));
     double records_per_sample = first_records_per_sample, budget = std::numeric_limits<double>::infinity();
-    double unguided = 0; // second moment times cost, of a sample
+    double unguided_cost = 0; // rays of a sample
     for (;;) {
         const double wanted = records_per_sample * double(pixels) * samples;
         const double share = std::min(1.0, 0.9 * static_cast<double>(most_records) / wanted);
@@ -214,19 +219,21 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
         summary.samples += samples;
         ++summary.rounds;
         std::vector<float> expected = expected_radiance(round, plan.bounds);
-        const double cost = static_cast<double>(round.rays) / (double(pixels) * samples) *
-                            (context.guide() ? cost_of_guiding : 1);
-        const double effort = relative_second_moment(round, expected) * cost;
+        const double cost = static_cast<double>(round.rays) / (double(pixels) * samples);
+        const double moment = relative_second_moment(round.squares, samples, expected);
         if (!context.guide()) {
-            unguided = effort;
+            unguided_cost = cost;
             budget =
                 samples_of_render(plan, round, std::chrono::duration<double>(Clock::now() - begin).count());
-        } else if (effort > 0) {
-            summary.gain = unguided / effort;
+        } else if (moment > 0) {
+            // By the guide's own samples: without it, so few would miss the rare light that decides.
+            summary.gain = relative_second_moment(round.unguided_squares, samples, expected) * unguided_cost /
+                           (moment * cost * cost_of_guiding);
         }
         const bool next_is_trial = summary.samples + 2.0 * samples <= trial * budget;
-        const bool gives_up = automatic && !next_is_trial && summary.gain < least_gain;
-        const bool nothing_found = round.record_count() == 0 || !(unguided > 0);
+        const bool gives_up = automatic && !next_is_trial &&
+                              summary.gain < (summary.rounds == 2 ? least_gain_of_first : least_gain);
+        const bool nothing_found = round.record_count() == 0 || !(moment > 0);
         if (gives_up || nothing_found) {
             context.set_guide(nullptr);
             break;

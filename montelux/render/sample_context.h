@@ -89,10 +89,14 @@ class SampleContext {
     const std::shared_ptr<const GuidingField>& guide() const { return guide_; }
     // Whether paths can follow a guide: those from the camera whose directions are drawn from BSDFs and phase functions.
     bool can_be_guided() const { return can_be_guided_; }
-    // Samples that a guide learns from and the film does not get: the radiance of each (mean over the wavelengths; 0 if
-    // it is bad), and the records of the paths that keep(i) wants, appended.
+    // Of a sample that a guide learns from; 0 if it is bad.
+    struct Lesson {
+        float radiance = 0;              // mean over the wavelengths
+        double square_without_guide = 0; // GuidingTrace
+    };
+    // Samples that the film does not get. The records of the paths that keep(i) wants are appended.
     template <typename Keep>
-    void teach(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<float> radiance,
+    void teach(RayTracer& tracer, std::span<const Key> keys, Batch& batch, std::span<Lesson> lessons,
                const Keep& keep, std::vector<GuidingRecord>& records) const;
     // A path that a sample of an integrator that makes splats finds, and what it brings to the film.
     struct FilmPath {
@@ -177,13 +181,13 @@ struct SampleContext::Batch {
 
 template <typename Keep>
 void SampleContext::teach(RayTracer& tracer, std::span<const Key> keys, Batch& batch,
-                          std::span<float> radiance, const Keep& keep,
+                          std::span<Lesson> lessons, const Keep& keep,
                           std::vector<GuidingRecord>& records) const {
     trace_for_guide(tracer, keys, batch);
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const SampledSpectrum& found = batch.paths[i].radiance;
         const bool good = all_finite(found) && !has_negative(found);
-        radiance[i] = good ? average(found) : 0;
+        lessons[i] = good ? Lesson{average(found), batch.traces[i].square_without_guide(found)} : Lesson();
         if (good && keep(i)) batch.traces[i].finish(found, guide_.get(), records);
     }
 }

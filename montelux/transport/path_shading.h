@@ -87,6 +87,17 @@ struct PathIntegrator::Vertex {
         ray.ray.time = state.ray.time;
         ray.contribution = state.throughput * e.f * light->radiance * (weight / light_pdf);
         ray.light = chosen.light;
+        if (region != nullptr && state.trace == nullptr && !survives_light_roulette(ray.contribution))
+            shadow.reset();
+    }
+
+    // Russian roulette on a light sample. Returns false if it need not be traced.
+    bool survives_light_roulette(SampledSpectrum& contribution) const {
+        const float survival = guided_light_survival(*region, contribution, state.expected);
+        if (!(survival < 1)) return true;
+        if (!(stream.next_1d() < survival)) return false;
+        contribution /= survival;
+        return true;
     }
 
     template <BsdfModel B>

@@ -6,7 +6,7 @@
 #include <variant>
 
 #include "montelux/scene/material/make_bsdf.h"
-#include "montelux/transport/guiding/guiding_trace.h"
+#include "montelux/transport/guiding/guided_scattering.h"
 #include "montelux/transport/light_choice.h"
 #include "montelux/transport/path_recorder.h"
 #include "montelux/transport/path_weights.h"
@@ -172,8 +172,14 @@ class VolumePathLights {
         record.bsdf_pdf = mixed_pdf(region, light->wi, e.pdf);
         record.light_pdf = chosen.choice * light->pdf;
         if (is_black(e.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
+        float survival = 1; // of Russian roulette
         if (state_.trace != nullptr) [[unlikely]]
             state_.trace->aim();
+        else if (region != nullptr) {
+            survival = guided_light_survival(
+                *region, state_.carried() * e.f * light->radiance / record.light_pdf, state_.expected);
+            if (survival < 1 && !(stream_.next_1d() < survival)) return;
+        }
         if (surface != nullptr) medium = medium_beyond(*surface, light->wi, medium);
         Ray shadow = light->shadow;
         shadow.time = state_.ray.time;
@@ -193,7 +199,7 @@ class VolumePathLights {
         record.weight = alone && others == 0 ? 1 : path_weight(settings_, record.light_pdf, others);
         if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
         finish(Outcome::counted);
-        state_.add(state_.carried() * e.f * record.radiance * (record.weight / record.light_pdf),
+        state_.add(state_.carried() * e.f * record.radiance * (record.weight / (record.light_pdf * survival)),
                    chosen.light);
     }
 

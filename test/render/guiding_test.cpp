@@ -214,6 +214,15 @@ TEST(Guiding, AutomaticGivesUpWhereItCannotWin) {
         ASSERT_TRUE(same_pixel(plain.film.pixels()[i], tried.film.pixels()[i]));
 }
 
+TEST(Guiding, AutomaticStaysWhereItWins) {
+    SceneBuilder b = hidden_lamp(96);
+    b.description.sampler.spp = 128;
+    b.description.integrator.guiding = Guiding::automatic;
+    const RenderState state = render_guided(b.description);
+    ASSERT_NE(state.guide, nullptr);
+    EXPECT_GT(state.report.guide.gain, 1.3);
+}
+
 TEST(Guiding, WithoutLightThereIsNoGuide) {
     SceneBuilder b;
     b.add_mesh(square(Transform()), b.add(DiffuseMaterial{gray(0.6f)}));

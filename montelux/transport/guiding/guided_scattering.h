@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 #include "montelux/mc/math/frame.h"
@@ -38,6 +39,7 @@ std::optional<BsdfSample> sample_guided(const B& bsdf, const Frame& frame, Vec3f
     if (!s) return s;
     if (s->specular) {
         s->weight /= 1 - region.share;
+        if (trace != nullptr) trace->scatter_smoothly(1 - region.share);
         return s;
     }
     const Vec3f wi = frame.to_world(s->wi);
@@ -79,6 +81,17 @@ inline float guided_survival(const GuidingRegion& region, SampledSpectrum throug
     constexpr float least = 0.3f;
     if (depth <= 2 || !(expected > 0)) return 1;
     return std::min(1.0f, std::max(expected_share(region, throughput, expected), least));
+}
+
+// The probability of Russian roulette on a light sample that brings `contribution` unless something occludes it: rays
+// that are mostly occluded are rarely traced. What they cost and the variance that their absence adds balance where it
+// is proportional to the root of the second moment (Bolin and Meyer 1997, "An Error Metric for Monte Carlo Ray Tracing").
+inline float guided_light_survival(const GuidingRegion& region, SampledSpectrum contribution,
+                                   float expected) {
+    constexpr float scale = 2, least = 0.05f;
+    if (!(expected > 0)) return 1;
+    const float wanted = scale * std::sqrt(region.visible) * average(contribution) / expected;
+    return wanted < 1 ? std::max(wanted, least) : 1; // 1 for NaN
 }
 
 // Branches that a path continues with from a vertex where it has survived, by the same: as many as bring what the pixel

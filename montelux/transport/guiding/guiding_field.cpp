@@ -47,6 +47,7 @@ void GuidingField::save(ByteWriter& out) const {
         region.directions.save(out);
         out.put(region.share);
         out.put(region.radiance);
+        out.put(region.visible);
     }
     out.put(bounds_);
     out.put(static_cast<std::uint64_t>(expected_.size()));
@@ -71,7 +72,8 @@ GuidingField GuidingField::load(ByteReader& in) {
         region.directions = QuadtreeDensity::load(in);
         region.share = in.get<float>();
         region.radiance = in.get<float>();
-        damaged(!(region.share >= 0 && region.share < 1));
+        region.visible = in.get<float>();
+        damaged(!(region.share >= 0 && region.share < 1 && region.visible > 0 && region.visible <= 1));
     }
     for (const std::vector<Node>& nodes : field.trees_)
         for (std::size_t n = 0; n < nodes.size(); ++n) {

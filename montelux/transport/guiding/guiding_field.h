@@ -30,6 +30,7 @@ struct GuidingRegion {
     QuadtreeDensity directions; // on equal_area_square, world space
     float share = 0;            // of the directions that are drawn from it; the others are the BSDF's
     float radiance = 0;         // mean over vertices that are not specular of the radiance that they scatter
+    float visible = 1;          // share of the light samples that nothing occludes
 
     // Per solid angle.
     float pdf(Vec3f wi) const { return directions.pdf(equal_area_sphere_to_square(wi)) * inv_four_pi_f; }

@@ -123,6 +123,7 @@ GuidingRegion learn_region(const Part& part, const QuadtreeSettings& settings) {
         visible += r->aimed && r->visible ? 1 : 0;
     }
     // Light that can be seen is left to light samples; light that is mostly hidden from them is not.
+    region.visible = (static_cast<float>(visible) + 1) / (static_cast<float>(aimed) + 1); // above 0
     const float hidden = aimed > 0 ? 1 - static_cast<float>(visible) / static_cast<float>(aimed) : 1.0f;
     std::vector<Found> found;
     double sum = 0;

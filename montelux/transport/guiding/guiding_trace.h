@@ -1,6 +1,7 @@
 // GuidingTrace: what a guide learns from one path.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -67,7 +68,12 @@ class GuidingTrace {
         v.pdf = pdf;
         v.bsdf_pdf = bsdf_pdf;
         v.guide_pdf = guide_pdf;
+        if (bsdf_pdf > 0) v.more_likely = pdf / bsdf_pdf;
         open_ = false;
+    }
+    // A delta lobe was drawn, so many times as often as without a guide.
+    void scatter_smoothly(float more_likely) {
+        if (open_) vertices_[size_ - 1].more_likely = more_likely;
     }
     // The path has ended with this radiance. What a direction brings from the next vertex is what the vertices around
     // that one scatter on average, by the guide: much less noisy than the rest of the path (temporal differences;
@@ -94,12 +100,41 @@ class GuidingTrace {
         }
     }
 
+    // An unbiased estimate of what the square of a path's radiance (mean of the wavelengths) would be without the guide
+    // that this path has followed, but for MIS weights: paths that it finds more often count more.
+    double square_without_guide(SampledSpectrum radiance) const {
+        const auto total = double(average(radiance));
+        double sum = 0, counted = 0;
+        // Of what is found there, and with all that is found later: it was as likely as the path so far.
+        const auto find = [&](double until, double more_likely) {
+            const double found = until - counted;
+            sum += more_likely * found * (found + 2 * (total - until));
+            counted = until;
+        };
+        double more_likely = 1;
+        find(size_ > 0 ? double(average(vertices_[0].before)) : total, 1);
+        for (std::size_t i = 0; i < size_; ++i) {
+            const Vertex& v = vertices_[i];
+            const bool last = i + 1 == size_;
+            const double carried =
+                more_likely * double(average(v.throughput)); // by directions of BSDFs alone
+            more_likely *= double(v.survival);
+            // Without a guide the throughput decides on Russian roulette.
+            const double roulette = carried > 0 ? std::min(1.0, carried) : 1;
+            find(last && !seen_ ? total : double(average(v.after_light_sample)), more_likely / roulette);
+            more_likely *= double(v.more_likely);
+            find(last ? total : double(average(vertices_[i + 1].before)), more_likely / roulette);
+        }
+        return sum;
+    }
+
   private:
     struct Vertex {
         Point3f p;
         Facing facing = Facing::medium;
         Vec2f direction;
         float pdf = 0, bsdf_pdf = 0, guide_pdf = 0, survival = 1;
+        float more_likely = 1; // the direction, than without a guide
         bool aimed = false;
         SampledSpectrum throughput{}; // of the path to it
         // Radiance of the path before its light sample, and after it.

@@ -163,7 +163,13 @@ TEST(GuidingLearner, LearnsLightThatLightSamplesRarelyFind) {
                 r.visible = visible;
             }
         const GuidingField field = GuidingLearner::learn(lists, {}, {0, 0, 1, 1}, {1.0f});
-        const float pdf = field.find({0.5f, 0.5f, 0}, facing_of({0, 0, 1}))->pdf(bright);
+        const GuidingRegion& region = *field.find({0.5f, 0.5f, 0}, facing_of({0, 0, 1}));
+        if (visible)
+            EXPECT_EQ(region.visible, 1);
+        else
+            EXPECT_LT(region.visible, 0.002f);
+        EXPECT_GT(region.visible, 0);
+        const float pdf = region.pdf(bright);
         if (visible)
             EXPECT_LT(pdf, 3 * inv_four_pi_f);
         else
@@ -229,6 +235,23 @@ TEST(GuidedScattering, SplitsByWhatAPathIsExpectedToBring) {
         EXPECT_GT(leaves, most_branches_of_sample / 4);
         EXPECT_NEAR(double(average(state.throughput)), 1.0 / leaves, 1e-6);
     }
+}
+
+// Strong ones always; weak ones, and those whose light is rarely seen, so that survivors bring what the pixel expects.
+TEST(GuidedScattering, TracesLightSamplesByWhatTheyBring) {
+    GuidingRegion region;
+    const auto survival = [&](float contribution, float visible, float expected = 4) {
+        region.visible = visible;
+        return guided_light_survival(region, SampledSpectrum(contribution), expected);
+    };
+    EXPECT_EQ(survival(2, 1), 1);
+    EXPECT_EQ(survival(1e30f, 1), 1);
+    EXPECT_FLOAT_EQ(survival(1, 1), 0.5f);
+    EXPECT_FLOAT_EQ(survival(2, 0.01f), 0.1f);
+    EXPECT_EQ(survival(20, 0.01f), 1);
+    EXPECT_EQ(survival(1e-6f, 1e-6f), 0.05f); // unbiased: never 0
+    EXPECT_EQ(survival(1e-6f, 1e-6f, 0), 1);  // it is not known what the pixel expects
+    EXPECT_EQ(survival(std::numeric_limits<float>::quiet_NaN(), 1), 1);
 }
 
 // Counted on the square that the guide's directions are learned on, where its density is constant by squares. The
