@@ -26,9 +26,9 @@ constexpr std::uint64_t first_paths = 1u << 16;
 constexpr double all_training = 1.0 / 6, trial = 1.0 / 30;
 // Guided paths are shaded one by one and look up densities: a ray of theirs takes so many times as long.
 constexpr double cost_of_guiding = 1.6;
-// Gain of a guide that is kept: the training is lost, and the estimate of the gain uncertain. The first guide has learned
-// without one: the next will be better.
-constexpr double least_gain = 1.3, least_gain_of_first = 1.1;
+// Gain of a guide that is kept. What splitting and the roulette of light samples gain comes on top. The first guide has
+// learned without one: the next, which is judged again, will be better.
+constexpr double least_gain = 1.1, least_gain_of_first = 0.85, least_gain_of_kept = 1;
 // Guesses before the first round, of its records per sample.
 constexpr double first_records_per_sample = 6;
 // No path counts as more than the root of this many times what its pixel expects: the rarest ones would decide alone.
@@ -96,7 +96,7 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
                     const double v = double(lessons[i].radiance);
                     round.sums[places[i]] += v;
                     round.squares[places[i]] += v * v;
-                    round.unguided_squares[places[i]] += lessons[i].square_without_guide;
+                    round.unguided_squares[places[i]] += lessons[i].unguided_square;
                 }
                 keys.clear();
                 places.clear();
@@ -199,12 +199,16 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
     const std::size_t tiles = tiles_of(plan.bounds, training_tile).size();
     const GuidingLearnerSettings learner{.most_bytes = memory / 8};
     const std::uint64_t pixels = pixel_count(plan.bounds);
-    // Of small pictures several for each pixel; not so many that three rounds take more than their share.
+    // Of small pictures several for each pixel; not so many that three rounds take more than their share. What a time or an
+    // error allows is not known yet.
+    const bool unknown = automatic && (plan.seconds > 0 || plan.error > 0);
+    const double most =
+        unknown ? 1 : (automatic ? trial : all_training) / 7 * static_cast<double>(plan.samples);
     auto samples = static_cast<std::uint32_t>(
-        std::clamp((automatic ? trial : all_training) / 7 * static_cast<double>(plan.samples), 1.0,
-                   std::max(1.0, static_cast<double>(first_paths) / static_cast<double>(pixels))));
+        std::clamp(most, 1.0, std::max(1.0, static_cast<double>(first_paths) / static_cast<double>(pixels))));
     double records_per_sample = first_records_per_sample, budget = std::numeric_limits<double>::infinity();
     double unguided_cost = 0; // rays of a sample
+    bool kept = false;        // after the trial
     for (;;) {
         const double wanted = records_per_sample * double(pixels) * samples;
         const double share = std::min(1.0, 0.9 * static_cast<double>(most_records) / wanted);
@@ -230,10 +234,15 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
             summary.gain = relative_second_moment(round.unguided_squares, samples, expected) * unguided_cost /
                            (moment * cost * cost_of_guiding);
         }
-        const bool next_is_trial = summary.samples + 2.0 * samples <= trial * budget;
-        const bool gives_up = automatic && !next_is_trial &&
-                              summary.gain < (summary.rounds == 2 ? least_gain_of_first : least_gain);
-        const bool nothing_found = round.record_count() == 0 || !(moment > 0);
+        // How far an error is, samples without a guide do not tell where light is hidden.
+        const bool next_is_trial =
+            (summary.rounds == 1 && plan.error > 0) || summary.samples + 2.0 * samples <= trial * budget;
+        const double least = summary.rounds == 2 ? least_gain_of_first
+                             : kept              ? least_gain_of_kept
+                                                 : least_gain;
+        const bool gives_up = automatic && !next_is_trial && !(summary.gain >= least);
+        kept = !next_is_trial && summary.rounds >= 3;
+        const bool nothing_found = round.record_count() == 0 || (!context.guide() && !(moment > 0));
         if (gives_up || nothing_found) {
             context.set_guide(nullptr);
             break;

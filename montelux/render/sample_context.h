@@ -91,8 +91,8 @@ class SampleContext {
     bool can_be_guided() const { return can_be_guided_; }
     // Of a sample that a guide learns from; 0 if it is bad.
     struct Lesson {
-        float radiance = 0;              // mean over the wavelengths
-        double square_without_guide = 0; // GuidingTrace
+        float radiance = 0;         // mean over the wavelengths
+        double unguided_square = 0; // of the radiance (UnguidedSquare)
     };
     // Samples that the film does not get. The records of the paths that keep(i) wants are appended.
     template <typename Keep>
@@ -187,7 +187,7 @@ void SampleContext::teach(RayTracer& tracer, std::span<const Key> keys, Batch& b
     for (std::size_t i = 0; i < keys.size(); ++i) {
         const SampledSpectrum& found = batch.paths[i].radiance;
         const bool good = all_finite(found) && !has_negative(found);
-        lessons[i] = good ? Lesson{average(found), batch.traces[i].square_without_guide(found)} : Lesson();
+        lessons[i] = good ? Lesson{average(found), batch.traces[i].unguided_square(found)} : Lesson();
         if (good && keep(i)) batch.traces[i].finish(found, guide_.get(), records);
     }
 }

@@ -30,7 +30,9 @@ void PathIntegrator::add_met_light(const SceneView& scene, PathState& state, Ind
                               .weight = weight,
                               .counted = counted});
     if (state.trace != nullptr && shared) [[unlikely]]
-        state.trace->left_to_light_samples(state.throughput * le * (1 - weight));
+        state.trace->meet_light(
+            state.throughput * le, weight,
+            counted ? hit_weight(settings_, state.trace->unguided_pdf(state.bsdf_pdf), pdf) : weight);
     if (counted) state.add(state.throughput * le * weight, light);
 }
 

@@ -36,6 +36,8 @@ struct PathIntegrator::Vertex {
     void sample_light(const B& bsdf, std::optional<ShadowRay>& shadow) const {
         using Outcome = DirectLight::Outcome;
         if (scene.light_sampler->empty()) return;
+        // Drawn by every path, so that those of a pixel stay stratified.
+        const float u_survival = plays_light_roulette() ? stream.next_1d() : 0;
         const ChosenLight chosen = choose_light(scene, state.previous, state.ray.time, state.lambda, stream);
         const float choice = chosen.choice;
         const std::optional<LightSample>& light = chosen.sample;
@@ -72,33 +74,33 @@ struct PathIntegrator::Vertex {
             return;
         }
         const Strategy strategy = path.settings_.strategy;
-        const float weight = light->invisible || strategy == Strategy::light
-                                 ? 1
-                                 : path_weight(path.settings_, light_pdf, scatter_pdf);
+        const auto weight_beside = [&](float pdf) {
+            return light->invisible || strategy == Strategy::light
+                       ? 1
+                       : path_weight(path.settings_, light_pdf, pdf);
+        };
+        const float weight = weight_beside(scatter_pdf);
         if (strategy == Strategy::mis_bsdf) {
             record(Outcome::other_term, weight);
             return;
         }
         record(Outcome::counted, weight);
         if (state.trace != nullptr) [[unlikely]]
-            state.trace->aim();
+            state.trace->aim(weight, weight_beside(e.pdf));
         ShadowRay& ray = shadow.emplace();
         ray.ray = light->shadow;
         ray.ray.time = state.ray.time;
         ray.contribution = state.throughput * e.f * light->radiance * (weight / light_pdf);
         ray.light = chosen.light;
-        if (region != nullptr && state.trace == nullptr && !survives_light_roulette(ray.contribution))
+        if (!plays_light_roulette()) return;
+        const float survival = guided_light_survival(*region, ray.contribution, state.expected);
+        if (u_survival < survival)
+            ray.contribution /= survival;
+        else
             shadow.reset();
     }
-
-    // Russian roulette on a light sample. Returns false if it need not be traced.
-    bool survives_light_roulette(SampledSpectrum& contribution) const {
-        const float survival = guided_light_survival(*region, contribution, state.expected);
-        if (!(survival < 1)) return true;
-        if (!(stream.next_1d() < survival)) return false;
-        contribution /= survival;
-        return true;
-    }
+    // The guide learns from all light samples which of them are occluded.
+    bool plays_light_roulette() const { return region != nullptr && state.trace == nullptr; }
 
     template <BsdfModel B>
     std::optional<BsdfSample> sample_direction(const B& bsdf) const {
@@ -139,6 +141,8 @@ struct PathIntegrator::Vertex {
                                                           : PathEnd::bad_throughput);
             return false;
         }
+        if (state.trace != nullptr) [[unlikely]]
+            state.trace->go_on(state.radiance, strength, state.depth);
         if (!(strength < 1) || state.depth <= 1 || region != nullptr) return true;
         const float u = stream.next_1d();
         if (recorder) recorder.played_roulette({.survival = strength, .u = u});
@@ -147,6 +151,8 @@ struct PathIntegrator::Vertex {
             return false;
         }
         state.throughput /= strength;
+        if (state.trace != nullptr) [[unlikely]]
+            state.trace->survive_on_throughput(strength);
         return true;
     }
 };

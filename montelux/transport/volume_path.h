@@ -378,11 +378,15 @@ class VolumePath : private VolumePathBranches<Stream> {
             state_.radiance += state_.carried();
             return end(is_black(state_.throughput) ? PathEnd::nothing_carried : PathEnd::bad_throughput);
         }
+        if (state_.trace != nullptr) [[unlikely]]
+            state_.trace->go_on(state_.radiance, strength, state_.depth);
         if (!(strength < 1) || state_.depth <= 1 || guided) return true;
         const float u = stream_.next_1d();
         if (recorder_) recorder_.played_roulette({.survival = strength, .u = u});
         if (!(u < strength)) return end(PathEnd::roulette);
         state_.throughput /= strength;
+        if (state_.trace != nullptr) [[unlikely]]
+            state_.trace->survive_on_throughput(strength);
         return true;
     }
 

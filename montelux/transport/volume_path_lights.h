@@ -60,7 +60,9 @@ class VolumePathLights {
                                    .weight = weight,
                                    .counted = counted});
         if (state_.trace != nullptr && shared) [[unlikely]]
-            state_.trace->left_to_light_samples(state_.carried() * le * (1 - weight));
+            state_.trace->meet_light(
+                state_.carried() * le, weight,
+                counted ? hit_weight(settings_, state_.trace->unguided_pdf(state_.bsdf_pdf), pdf) : weight);
         if (counted) state_.add(state_.carried() * le * weight, light);
     }
 
@@ -153,6 +155,10 @@ class VolumePathLights {
                       const SurfacePoint* surface = nullptr, const TextureContext* context = nullptr) {
         using Outcome = DirectLight::Outcome;
         if (scene_.light_sampler->empty()) return;
+        // Drawn by every path, so that those of a pixel stay stratified. The guide learns from all light samples which of
+        // them are occluded.
+        const bool plays_roulette = region != nullptr && state_.trace == nullptr;
+        const float u_survival = plays_roulette ? stream_.next_1d() : 0;
         const ChosenLight chosen =
             choose_light(scene_, state_.previous, state_.ray.time, state_.lambda, stream_);
         const std::optional<LightSample>& light = chosen.sample;
@@ -172,13 +178,13 @@ class VolumePathLights {
         record.bsdf_pdf = mixed_pdf(region, light->wi, e.pdf);
         record.light_pdf = chosen.choice * light->pdf;
         if (is_black(e.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
-        float survival = 1; // of Russian roulette
         if (state_.trace != nullptr) [[unlikely]]
-            state_.trace->aim();
-        else if (region != nullptr) {
+            state_.trace->aim(1, 1);
+        float survival = 1; // of Russian roulette
+        if (plays_roulette) {
             survival = guided_light_survival(
                 *region, state_.carried() * e.f * light->radiance / record.light_pdf, state_.expected);
-            if (survival < 1 && !(stream_.next_1d() < survival)) return;
+            if (!(u_survival < survival)) return finish(Outcome::occluded);
         }
         if (surface != nullptr) medium = medium_beyond(*surface, light->wi, medium);
         Ray shadow = light->shadow;
@@ -195,8 +201,14 @@ class VolumePathLights {
         record.light_pdf *= average(state_.r_u * through->r_l) / before;
         const bool alone = light->invisible || settings_.strategy == Strategy::light;
         record.other_pdf = segment_pdf(chosen.light, chosen.part, light->pdf, through->r_l);
-        const float others = joint_density(settings_, alone ? 0 : record.bsdf_pdf, record.other_pdf);
-        record.weight = alone && others == 0 ? 1 : path_weight(settings_, record.light_pdf, others);
+        const auto weight_beside = [&](float scatter_pdf) {
+            const float others = joint_density(settings_, alone ? 0 : scatter_pdf, record.other_pdf);
+            return alone && others == 0 ? 1 : path_weight(settings_, record.light_pdf, others);
+        };
+        record.weight = weight_beside(record.bsdf_pdf);
+        if (state_.trace != nullptr && record.bsdf_pdf > 0) [[unlikely]]
+            state_.trace->aim(record.weight,
+                              weight_beside(e.pdf * average(state_.r_u * through->r_u) / before));
         if (settings_.strategy == Strategy::mis_bsdf) return finish(Outcome::other_term);
         finish(Outcome::counted);
         state_.add(state_.carried() * e.f * record.radiance * (record.weight / (record.light_pdf * survival)),

@@ -39,7 +39,7 @@ std::optional<BsdfSample> sample_guided(const B& bsdf, const Frame& frame, Vec3f
     if (!s) return s;
     if (s->specular) {
         s->weight /= 1 - region.share;
-        if (trace != nullptr) trace->scatter_smoothly(1 - region.share);
+        if (trace != nullptr) trace->scatter_in_delta_lobe(1 - region.share);
         return s;
     }
     const Vec3f wi = frame.to_world(s->wi);
@@ -83,15 +83,16 @@ inline float guided_survival(const GuidingRegion& region, SampledSpectrum throug
     return std::min(1.0f, std::max(expected_share(region, throughput, expected), least));
 }
 
-// The probability of Russian roulette on a light sample that brings `contribution` unless something occludes it: rays
-// that are mostly occluded are rarely traced. What they cost and the variance that their absence adds balance where it
-// is proportional to the root of the second moment (Bolin and Meyer 1997, "An Error Metric for Monte Carlo Ray Tracing").
+// The probability that Russian roulette lets a light sample live which brings `contribution` unless something occludes
+// it. Weak ones, and those in regions whose light samples are mostly occluded, are rarely traced. The variance that this
+// adds and the time that it saves balance where the probability is in proportion to the root of the second moment,
+// contribution times sqrt(visible) (Bolin and Meyer 1997, "An Error Metric for Monte Carlo Ray Tracing").
 inline float guided_light_survival(const GuidingRegion& region, SampledSpectrum contribution,
                                    float expected) {
     constexpr float scale = 2, least = 0.05f;
     if (!(expected > 0)) return 1;
     const float wanted = scale * std::sqrt(region.visible) * average(contribution) / expected;
-    return wanted < 1 ? std::max(wanted, least) : 1; // 1 for NaN
+    return wanted >= 0 && wanted < 1 ? std::max(wanted, least) : 1; // 1 for values that are reported as bad
 }
 
 // Branches that a path continues with from a vertex where it has survived, by the same: as many as bring what the pixel

@@ -1,7 +1,6 @@
-// GuidingTrace: what a guide learns from one path.
+// GuidingTrace: what a guide learns from one path, and what it tells about paths without a guide.
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
@@ -10,6 +9,7 @@
 #include "montelux/mc/warp/equal_area_square.h"
 #include "montelux/spectrum/sampled_spectrum.h"
 #include "montelux/transport/guiding/guiding_field.h"
+#include "montelux/transport/guiding/unguided_square.h"
 
 namespace montelux {
 
@@ -29,22 +29,36 @@ struct GuidingRecord {
 // Written while a path is traced; nothing in it influences the path.
 class GuidingTrace {
   public:
-    void clear() { size_ = 0; }
+    void clear() {
+        size_ = 0;
+        full_ = false;
+        more_likely_ = 1;
+        unguided_.clear();
+    }
 
     // The path goes on from the last vertex; the radiance is without what it meets there.
     void arrive(SampledSpectrum radiance) {
+        unguided_.arrive(double(average(radiance)));
         if (size_ == 0 || seen_) return;
         vertices_[size_ - 1].after_light_sample = radiance;
         seen_ = true;
     }
-    // The ray that left the last vertex has found a light, of which the path does not count this part.
-    void left_to_light_samples(SampledSpectrum radiance) {
-        if (size_ > 0) vertices_[size_ - 1].left_to_light_samples = radiance;
+    // The ray that left the last vertex has found a light, which the path counts with this MIS weight, and without the
+    // guide would count with the other one.
+    void meet_light(SampledSpectrum radiance, float weight, float unguided_weight) {
+        unguided_.meet_light((double(unguided_weight) - double(weight)) * double(average(radiance)));
+        if (size_ > 0 && !full_) vertices_[size_ - 1].left_to_light_samples = radiance * (1 - weight);
+    }
+    // Density of the last direction without the guide, where `pdf` is the one with it.
+    float unguided_pdf(float pdf) const {
+        return more_likely_ > 0 ? static_cast<float>(double(pdf) / more_likely_) : 0;
     }
     // A vertex that is not specular; its emission is in the radiance.
     void begin(Point3f p, Facing facing, SampledSpectrum throughput, SampledSpectrum radiance) {
+        unguided_.arrive(double(average(radiance)));
         open_ = size_ < vertices_.size();
-        if (!open_) return;
+        full_ = !open_;
+        if (full_) return;
         seen_ = false;
         Vertex& v = vertices_[size_++];
         v = {};
@@ -55,25 +69,34 @@ class GuidingTrace {
     }
     // The last vertex has survived Russian roulette, with this probability.
     void survive(float probability) {
+        unguided_.survive(double(probability));
         if (open_) vertices_[size_ - 1].survival = probability;
     }
-    void aim() {
+    // ... any vertex has survived the one without a guide.
+    void survive_on_throughput(float probability) { unguided_.survive(double(probability)); }
+    // It samples light. Without the guide this has `unguided_weight` in place of its MIS weight.
+    void aim(float weight, float unguided_weight) {
+        unguided_.sample_light(weight > 0 ? double(unguided_weight) / double(weight) : 1);
         if (open_) vertices_[size_ - 1].aimed = true;
     }
     // Densities as those of GuidingRecord.
     void scatter(Vec3f wi, float pdf, float bsdf_pdf, float guide_pdf) {
+        more_likely_ = bsdf_pdf > 0 ? double(pdf) / double(bsdf_pdf) : 0;
+        unguided_.scatter(more_likely_);
         if (!open_) return;
         Vertex& v = vertices_[size_ - 1];
         v.direction = equal_area_sphere_to_square(wi);
         v.pdf = pdf;
         v.bsdf_pdf = bsdf_pdf;
         v.guide_pdf = guide_pdf;
-        if (bsdf_pdf > 0) v.more_likely = pdf / bsdf_pdf;
         open_ = false;
     }
     // A delta lobe was drawn, so many times as often as without a guide.
-    void scatter_smoothly(float more_likely) {
-        if (open_) vertices_[size_ - 1].more_likely = more_likely;
+    void scatter_in_delta_lobe(float more_likely) { unguided_.scatter(double(more_likely)); }
+    // The path goes on from any vertex, after `depth` scattering events, unless Russian roulette without a guide ends it,
+    // which goes by `strength`.
+    void go_on(SampledSpectrum radiance, float strength, int depth) {
+        unguided_.go_on(double(average(radiance)), double(strength), depth > 1);
     }
     // The path has ended with this radiance. What a direction brings from the next vertex is what the vertices around
     // that one scatter on average, by the guide: much less noisy than the rest of the path (temporal differences;
@@ -100,32 +123,10 @@ class GuidingTrace {
         }
     }
 
-    // An unbiased estimate of what the square of a path's radiance (mean of the wavelengths) would be without the guide
-    // that this path has followed, but for MIS weights: paths that it finds more often count more.
-    double square_without_guide(SampledSpectrum radiance) const {
-        const auto total = double(average(radiance));
-        double sum = 0, counted = 0;
-        // Of what is found there, and with all that is found later: it was as likely as the path so far.
-        const auto find = [&](double until, double more_likely) {
-            const double found = until - counted;
-            sum += more_likely * found * (found + 2 * (total - until));
-            counted = until;
-        };
-        double more_likely = 1;
-        find(size_ > 0 ? double(average(vertices_[0].before)) : total, 1);
-        for (std::size_t i = 0; i < size_; ++i) {
-            const Vertex& v = vertices_[i];
-            const bool last = i + 1 == size_;
-            const double carried =
-                more_likely * double(average(v.throughput)); // by directions of BSDFs alone
-            more_likely *= double(v.survival);
-            // Without a guide the throughput decides on Russian roulette.
-            const double roulette = carried > 0 ? std::min(1.0, carried) : 1;
-            find(last && !seen_ ? total : double(average(v.after_light_sample)), more_likely / roulette);
-            more_likely *= double(v.more_likely);
-            find(last ? total : double(average(vertices_[i + 1].before)), more_likely / roulette);
-        }
-        return sum;
+    // What the square of an unguided path's radiance (mean over the wavelengths) is on average.
+    double unguided_square(SampledSpectrum radiance) const {
+        UnguidedSquare unguided = unguided_;
+        return unguided.square(double(average(radiance)));
     }
 
   private:
@@ -134,7 +135,6 @@ class GuidingTrace {
         Facing facing = Facing::medium;
         Vec2f direction;
         float pdf = 0, bsdf_pdf = 0, guide_pdf = 0, survival = 1;
-        float more_likely = 1; // the direction, than without a guide
         bool aimed = false;
         SampledSpectrum throughput{}; // of the path to it
         // Radiance of the path before its light sample, and after it.
@@ -144,8 +144,11 @@ class GuidingTrace {
 
     std::array<Vertex, 32> vertices_; // later ones teach nothing
     std::size_t size_ = 0;
-    bool open_ = false; // the last vertex has no direction yet
-    bool seen_ = false; // the path has gone on from it
+    bool open_ = false;      // the last vertex has no direction yet
+    bool seen_ = false;      // the path has gone on from it
+    bool full_ = false;      // the path has later vertices
+    double more_likely_ = 1; // the last direction, than without a guide
+    UnguidedSquare unguided_;
 };
 
 } // namespace montelux

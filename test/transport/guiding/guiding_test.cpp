@@ -237,7 +237,7 @@ TEST(GuidedScattering, SplitsByWhatAPathIsExpectedToBring) {
     }
 }
 
-// Strong ones always; weak ones, and those whose light is rarely seen, so that survivors bring what the pixel expects.
+// Strong ones always; weak ones, and those whose light is rarely seen, rarely.
 TEST(GuidedScattering, TracesLightSamplesByWhatTheyBring) {
     GuidingRegion region;
     const auto survival = [&](float contribution, float visible, float expected = 4) {
@@ -248,7 +248,8 @@ TEST(GuidedScattering, TracesLightSamplesByWhatTheyBring) {
     EXPECT_EQ(survival(1e30f, 1), 1);
     EXPECT_FLOAT_EQ(survival(1, 1), 0.5f);
     EXPECT_FLOAT_EQ(survival(2, 0.01f), 0.1f);
-    EXPECT_EQ(survival(20, 0.01f), 1);
+    EXPECT_EQ(survival(21, 0.01f), 1);
+    EXPECT_EQ(survival(-1, 1), 1);            // a fault, which is reported
     EXPECT_EQ(survival(1e-6f, 1e-6f), 0.05f); // unbiased: never 0
     EXPECT_EQ(survival(1e-6f, 1e-6f, 0), 1);  // it is not known what the pixel expects
     EXPECT_EQ(survival(std::numeric_limits<float>::quiet_NaN(), 1), 1);
