@@ -163,7 +163,7 @@ TEST(GuidingSplits, BrightObjectsOnBlackExpectTheirLight) {
     b.add_mesh(square(Transform::translate({0, 0, 3}) * Transform::rotate(180, {1, 0, 0})),
                b.add(DiffuseMaterial{gray(0)}), 5);
     b.look({0, -20, 12}, {0, 0, 0.5}, 45);
-    Guided guided(std::move(b));
+    Guided guided(b);
     ASSERT_TRUE(guided.has_guide());
     const std::vector<SampleContext::Key> keys = guided.keys(8);
     guided.take(keys);
@@ -182,8 +182,8 @@ TEST(GuidingSplits, BrightObjectsOnBlackExpectTheirLight) {
 
 // Whatever else is in the batch, and in any order: so threads, ranks and resumed renders get the same bits.
 TEST(GuidingSplits, SamplesHaveTheSameBitsInAnyBatch) {
-    for (SceneBuilder b : {hidden_lamp(12), lamp_behind_prism(12), lamp_in_fog(12)}) {
-        Guided guided(std::move(b));
+    for (const SceneBuilder& b : {hidden_lamp(12), lamp_behind_prism(12), lamp_in_fog(12)}) {
+        Guided guided(b);
         std::vector<SampleContext::Key> keys = guided.keys(4);
         const auto together = guided.take(keys);
         for (std::size_t i = 0; i < keys.size(); ++i) {
@@ -216,9 +216,9 @@ TEST(GuidingGain, GuidedSamplesTellTheSecondMomentOfOthers) {
         SceneBuilder scene;
         std::uint64_t samples; // per pixel, for an error of a few per cent
     };
-    for (Case& c : std::array{Case{hidden_lamp(8, 0.7f, 0.6), 2048}, Case{half_hidden_lamp(8), 512},
-                              Case{lamp_in_fog(8, 1.6), 2048}, Case{mixed_scene(), 64}}) {
-        Guided guided(std::move(c.scene));
+    for (const Case& c : std::array{Case{hidden_lamp(8, 0.7f, 0.6), 2048}, Case{half_hidden_lamp(8), 512},
+                                    Case{lamp_in_fog(8, 1.6), 2048}, Case{mixed_scene(), 64}}) {
+        Guided guided(c.scene);
         ASSERT_TRUE(guided.has_guide());
         std::vector<GuidingRecord> records;
         RunningMoments foretold, with, without;
@@ -242,9 +242,9 @@ TEST(GuidingGain, GuidedSamplesTellTheSecondMomentOfOthers) {
 TEST(GuidingSplits, MeansAreThoseOfSinglePaths) {
     // A wide slit, so that paths without a guide have little noise.
     constexpr double slit = 1;
-    for (SceneBuilder b :
+    for (const SceneBuilder& b :
          {hidden_lamp(16, 0.7f, slit), lamp_behind_prism(16, 1.6), lamp_in_fog(16, slit), mixed_scene()}) {
-        Guided guided(std::move(b));
+        Guided guided(b);
         const std::vector<SampleContext::Key> keys = guided.keys(256);
         Moments3 with, without;
         for (const auto& r : guided.take(keys)) with.add(r.film.radiance);
