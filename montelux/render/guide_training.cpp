@@ -230,11 +230,11 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
             budget =
                 samples_of_render(plan, round, std::chrono::duration<double>(Clock::now() - begin).count());
         } else if (moment > 0) {
-            // By the guide's own samples: without it, so few would miss the rare light that decides.
+            // Estimated from guided samples: so few unguided ones would miss rare light, which dominates the variance.
             summary.gain = relative_second_moment(round.unguided_squares, samples, expected) * unguided_cost /
                            (moment * cost * cost_of_guiding);
         }
-        // How far an error is, samples without a guide do not tell where light is hidden.
+        // Where light is hidden, unguided samples underestimate how many samples an error target needs.
         const bool next_is_trial =
             (summary.rounds == 1 && plan.error > 0) || summary.samples + 2.0 * samples <= trial * budget;
         const double least = summary.rounds == 2 ? least_gain_of_first

@@ -52,6 +52,8 @@ class VolumePath : private VolumePathBranches<Stream> {
     using Branches = VolumePathBranches<Stream>;
     using Branches::body_events_;
     using Branches::passages_;
+    using Branches::begin_guided;
+    using Branches::end;
     using Branches::split;
     using Branches::takes_up_branch;
     using Lights::add_met_light;
@@ -161,13 +163,6 @@ class VolumePath : private VolumePathBranches<Stream> {
         end(PathEnd::bad_throughput);
     }
 
-    // Always false.
-    bool end(PathEnd how) {
-        state_.alive = false;
-        if (recorder_) recorder_.ended(how);
-        return false;
-    }
-
     void scatter(Point3f p, const PhaseFunction& phase, const MediumPoint& m) {
         if (recorder_)
             recorder_.collided(state_.ray, {.p = p, .sigma_a = m.sigma_a, .sigma_s = m.sigma_s},
@@ -227,23 +222,6 @@ class VolumePath : private VolumePathBranches<Stream> {
         state_.ray.d = wi;
         state_.ray.t_max = std::numeric_limits<float>::infinity();
         if (recorder_) recorder_.scattered_in_medium(wi, state_.bsdf_pdf, state_.carried());
-    }
-
-    // A vertex that a guide learns from. Returns false if Russian roulette ends the path by what its region (null: none)
-    // expects.
-    bool begin_guided(Point3f p, Facing facing, const GuidingRegion* region) {
-        if (state_.trace != nullptr) [[unlikely]]
-            state_.trace->begin(p, facing, state_.carried(), state_.radiance);
-        if (region == nullptr) return true;
-        const float survival = guided_survival(*region, state_.carried(), state_.depth, state_.expected);
-        if (!(survival < 1)) return true;
-        const float u = stream_.next_1d();
-        if (recorder_) recorder_.played_roulette({.survival = survival, .u = u});
-        if (!(u < survival)) return end(PathEnd::roulette);
-        state_.throughput /= survival;
-        if (state_.trace != nullptr) [[unlikely]]
-            state_.trace->survive(survival);
-        return true;
     }
 
     void shade(const Hit& hit) {

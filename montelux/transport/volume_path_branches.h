@@ -18,6 +18,31 @@ class VolumePathBranches : protected VolumePathLights<Stream> {
     using VolumePathLights<Stream>::VolumePathLights;
     using VolumePathLights<Stream>::state_;
     using VolumePathLights<Stream>::stream_;
+    using VolumePathLights<Stream>::recorder_;
+
+    // Always false.
+    bool end(PathEnd how) {
+        state_.alive = false;
+        if (recorder_) recorder_.ended(how);
+        return false;
+    }
+
+    // A vertex that a guide learns from. Returns false if Russian roulette ends the path by what its region (null: none)
+    // expects.
+    bool begin_guided(Point3f p, Facing facing, const GuidingRegion* region) {
+        if (state_.trace != nullptr) [[unlikely]]
+            state_.trace->begin(p, facing, state_.carried(), state_.radiance);
+        if (region == nullptr) return true;
+        const float survival = guided_survival(*region, state_.carried(), state_.depth, state_.expected);
+        if (!(survival < 1)) return true;
+        const float u = stream_.next_1d();
+        if (recorder_) recorder_.played_roulette({.survival = survival, .u = u});
+        if (!(u < survival)) return end(PathEnd::roulette);
+        state_.throughput /= survival;
+        if (state_.trace != nullptr) [[unlikely]]
+            state_.trace->survive(survival);
+        return true;
+    }
 
     // Continues by scatter() from a vertex of a region (null: none), where a guide may split the path. The branches that
     // begin here but for one are taken up when that has ended.

@@ -209,8 +209,7 @@ SceneBuilder half_hidden_lamp(int size) {
     return b;
 }
 
-// What a guide gains is told by its own samples: they tell the second moment of samples without it. 4 tests at 5 standard
-// errors: 2e-6.
+// Guided samples estimate the second moment of unguided samples. 4 tests at 5 standard errors: 2e-6.
 TEST(GuidingGain, GuidedSamplesTellTheSecondMomentOfOthers) {
     struct Case {
         SceneBuilder scene;
@@ -228,7 +227,7 @@ TEST(GuidingGain, GuidedSamplesTellTheSecondMomentOfOthers) {
         }
         for (const auto& l : guided.teach(guided.keys(2 * c.samples), false, records)) {
             const double square = double(l.radiance) * double(l.radiance);
-            ASSERT_NEAR(l.unguided_square, square, 1e-4 * square); // a sample without a guide tells its own
+            ASSERT_NEAR(l.unguided_square, square, 1e-4 * square); // exact for unguided samples
             without.add(square);
         }
         const double error = std::hypot(foretold.standard_error(), without.standard_error());

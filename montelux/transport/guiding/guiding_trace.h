@@ -1,4 +1,4 @@
-// GuidingTrace: what a guide learns from one path, and what it tells about paths without a guide.
+// GuidingTrace: the records of one path that a guide learns from, and its UnguidedSquare.
 #pragma once
 
 #include <array>
