@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "montelux/scene/bsdf/narrow_lobes.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/material/soft_terminator.h"
 #include "montelux/scene/shape/surface_point.h"
@@ -53,7 +54,7 @@ struct PathIntegrator::Vertex {
             bsdf.evaluate(wo, frame.to_local(light->wi), TransportMode::radiance, stream);
         const float light_pdf = choice * light->pdf;
         const float scatter_pdf =
-            region == nullptr ? e.pdf : region->mixed_pdf(region->pdf(light->wi), e.pdf);
+            region == nullptr ? e.pdf : region->mixed_pdf(region->pdf(state.previous.p, light->wi), e.pdf);
         auto record = [&](Outcome outcome, float weight) {
             if (recorder)
                 recorder.sampled_light({.outcome = outcome,
@@ -107,32 +108,35 @@ struct PathIntegrator::Vertex {
         if (path.settings_.strategy == Strategy::uniform && !bsdf.is_specular())
             return sample_uniform(bsdf, wo, stream);
         if (region != nullptr && !bsdf.is_specular())
-            return sample_guided(bsdf, frame, wo, *region, stream, state.trace);
+            return sample_guided(bsdf, frame, state.previous.p, wo, *region, stream, state.trace);
         const std::optional<BsdfSample> s = bsdf.sample(wo, TransportMode::radiance, stream);
         if (state.trace != nullptr && s && !s->specular) [[unlikely]]
             state.trace->scatter(frame.to_world(s->wi), s->pdf, s->pdf, 0);
         return s;
     }
 
-    // Russian roulette on what the path is expected to bring. Returns false if the path ends.
-    bool is_worth_going_on() const {
-        const float survival = guided_survival(*region, state.throughput, state.depth, state.expected);
+    // Russian roulette. Returns false if the path ends.
+    bool lives(float survival) const {
         if (!(survival < 1)) return true;
         const float u = stream.next_1d();
         if (recorder) recorder.played_roulette({.survival = survival, .u = u});
-        if (!(u < survival)) {
-            if (recorder) recorder.ended(PathEnd::roulette);
-            return false;
+        if (u < survival) {
+            state.throughput /= survival;
+            return true;
         }
-        state.throughput /= survival;
+        if (recorder) recorder.ended(PathEnd::roulette);
+        return false;
+    }
+    // With a guide.
+    bool lives_with_guide(float survival) const {
+        if (!lives(survival)) return false;
         if (state.trace != nullptr) [[unlikely]]
-            state.trace->survive(survival);
+            state.trace->survive(std::min(survival, 1.0f));
         return true;
     }
-
-    // Russian roulette on the throughput to the film. Returns false if the path ends.
+    // On the throughput to the film, or on what is left of it since a guide last played its own; not where it has.
     bool survives() const {
-        const float strength = max_value(state.throughput) * state.roulette_scale;
+        const float strength = state.strength(state.throughput);
         if (!(strength > 0)) {
             // A NaN throughput must not end silently: it makes the sample bad.
             state.radiance += state.throughput;
@@ -143,16 +147,14 @@ struct PathIntegrator::Vertex {
         }
         if (state.trace != nullptr) [[unlikely]]
             state.trace->go_on(state.radiance, strength, state.depth);
-        if (!(strength < 1) || state.depth <= 1 || region != nullptr) return true;
-        const float u = stream.next_1d();
-        if (recorder) recorder.played_roulette({.survival = strength, .u = u});
-        if (!(u < strength)) {
-            if (recorder) recorder.ended(PathEnd::roulette);
-            return false;
+        if (region != nullptr) {
+            state.guided_strength = strength;
+            return true;
         }
-        state.throughput /= strength;
+        const float survival = state.depth > 1 ? std::min(strength / state.guided_strength, 1.0f) : 1;
+        if (!lives(survival)) return false;
         if (state.trace != nullptr) [[unlikely]]
-            state.trace->survive_on_throughput(strength);
+            state.trace->survive_on_throughput(survival);
         return true;
     }
 };
@@ -204,13 +206,20 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     const bool guides = (guide_ != nullptr || state.trace != nullptr) &&
                         !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
     const GuidingRegion* const region = guides && guide_ != nullptr ? guide_->find(s.p, facing) : nullptr;
+    const bool glossy = guides && std::visit([](const auto& b) { return is_glossy(b); }, surface.bsdf);
     const Vertex<Stream> vertex{*this, scene, state, stream, recorder, surface.frame, wo, region};
     if (guides && state.trace != nullptr) [[unlikely]]
-        state.trace->begin(s.p, facing, state.throughput, state.radiance);
-    if (region != nullptr && !vertex.is_worth_going_on()) return shadow;
+        state.trace->begin(s.p, facing, glossy, state.throughput, state.radiance);
+    // What a glossy surface scatters depends on the direction: the mean of its region is no judge of it.
+    const GuidingRegion* const judge = glossy ? nullptr : region;
+    if (region != nullptr &&
+        !vertex.lives_with_guide(judge != nullptr
+                                     ? guided_survival(*judge, state.throughput, state.depth, state.expected)
+                                     : glossy_survival(surface.bsdf, wo, state.depth)))
+        return shadow;
     if constexpr (std::same_as<Stream, SampleStream>)
-        if (region != nullptr && begun != nullptr && state.trace == nullptr) {
-            const int count = guided_branches(*region, state.throughput, state.branches, state.expected);
+        if (judge != nullptr && begun != nullptr && state.trace == nullptr) {
+            const int count = guided_branches(*judge, state.throughput, state.branches, state.expected);
             if (count > 1) state.split(count);
             for (int i = 1; i < count; ++i) {
                 PathBranch& b = begun->emplace_back(PathBranch{state, stream.branch(i), std::nullopt});

@@ -26,6 +26,8 @@ struct PathState {
     float bsdf_pdf = 0;      // of the ray's direction there
     // Of throughputs in Russian roulette: squared index of refraction along the path, times the branches it is one of.
     float roulette_scale = 1;
+    // strength() after the last vertex where a guide played Russian roulette; 1 before that.
+    float guided_strength = 1;
     int depth = 0;                  // scattering events so far
     bool sees_lights = true;        // no other strategy can find the light that the ray hits
     bool scattered_roughly = false; // some event so far was not specular
@@ -63,6 +65,8 @@ struct PathState {
         if (extras != nullptr) [[unlikely]]
             extras->transparency = transparency;
     }
+    // What Russian roulette on the throughput goes by.
+    float strength(SampledSpectrum carried) const { return max_value(carried) * roulette_scale; }
     // The path is one of `count` branches.
     void split(int count) {
         throughput /= static_cast<float>(count);

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "montelux/mc/warp/sphere.h"
+#include "montelux/scene/bsdf/narrow_lobes.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/material/soft_terminator.h"
 #include "montelux/transport/guiding/guided_scattering.h"
@@ -50,10 +51,10 @@ class VolumePath : private VolumePathBranches<Stream> {
   private:
     using Lights = VolumePathLights<Stream>;
     using Branches = VolumePathBranches<Stream>;
-    using Branches::body_events_;
-    using Branches::passages_;
     using Branches::begin_guided;
+    using Branches::body_events_;
     using Branches::end;
+    using Branches::passages_;
     using Branches::split;
     using Branches::takes_up_branch;
     using Lights::add_met_light;
@@ -190,7 +191,7 @@ class VolumePath : private VolumePathBranches<Stream> {
                         return BsdfEvaluation{SampledSpectrum(pdf), pdf};
                     });
                 if (region != nullptr) {
-                    const GuidedDirection d = sample_guided(f, wo, *region, stream_, state_.trace);
+                    const GuidedDirection d = sample_guided(f, p, wo, *region, stream_, state_.trace);
                     state_.bsdf_pdf = d.pdf;
                     state_.throughput *= d.weight;
                     continue_in_medium(p, d.wi);
@@ -275,8 +276,12 @@ class VolumePath : private VolumePathBranches<Stream> {
         const bool guides = (guide_ != nullptr || state_.trace != nullptr) && !in_body && !last &&
                             !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
         const GuidingRegion* const region = guides ? guide_at(s.p, facing) : nullptr;
-        if (guides && !begin_guided(s.p, facing, region)) return;
-        split(region, [&] { continue_from(s, surface, wo, context, region, last); });
+        const bool glossy = guides && std::visit([](const auto& b) { return is_glossy(b); }, surface.bsdf);
+        std::optional<float> survival;
+        if (glossy) survival = glossy_survival(surface.bsdf, wo, state_.depth);
+        if (guides && !begin_guided(s.p, facing, region, survival)) return;
+        // What a glossy surface scatters depends on the direction: the mean of its region is no judge of it.
+        split(glossy ? nullptr : region, [&] { continue_from(s, surface, wo, context, region, last); });
     }
 
     // From a surface; `last`: unless the path passes it.
@@ -296,7 +301,7 @@ class VolumePath : private VolumePathBranches<Stream> {
                 if (settings_.strategy == Strategy::uniform && !bsdf.is_specular())
                     return sample_uniform(bsdf, wo, stream_);
                 if (region != nullptr)
-                    return sample_guided(bsdf, surface.frame, wo, *region, stream_, state_.trace);
+                    return sample_guided(bsdf, surface.frame, s.p, wo, *region, stream_, state_.trace);
                 const auto sample = bsdf.sample(wo, TransportMode::radiance, stream_);
                 if (state_.trace != nullptr && !in_body && !last && sample && !sample->specular) [[unlikely]]
                     state_.trace->scatter(surface.frame.to_world(sample->wi), sample->pdf, sample->pdf, 0);
@@ -347,10 +352,10 @@ class VolumePath : private VolumePathBranches<Stream> {
         end(PathEnd::left_scene);
     }
 
-    // Russian roulette on what the path carries to the film, unless a guide has played its own. Returns false if the
-    // path ends.
+    // Russian roulette on what the path carries to the film, or on what is left of it since a guide last played its own;
+    // none where that has been here. Returns false if the path ends.
     bool survives(bool guided) {
-        const float strength = max_value(state_.carried()) * state_.roulette_scale;
+        const float strength = state_.strength(state_.carried());
         if (!(strength > 0)) {
             // A NaN must not end silently: it makes the sample bad.
             state_.radiance += state_.carried();
@@ -358,13 +363,18 @@ class VolumePath : private VolumePathBranches<Stream> {
         }
         if (state_.trace != nullptr) [[unlikely]]
             state_.trace->go_on(state_.radiance, strength, state_.depth);
-        if (!(strength < 1) || state_.depth <= 1 || guided) return true;
+        if (guided) {
+            state_.guided_strength = strength;
+            return true;
+        }
+        const float survival = strength / state_.guided_strength;
+        if (!(survival < 1) || state_.depth <= 1) return true;
         const float u = stream_.next_1d();
-        if (recorder_) recorder_.played_roulette({.survival = strength, .u = u});
-        if (!(u < strength)) return end(PathEnd::roulette);
-        state_.throughput /= strength;
+        if (recorder_) recorder_.played_roulette({.survival = survival, .u = u});
+        if (!(u < survival)) return end(PathEnd::roulette);
+        state_.throughput /= survival;
         if (state_.trace != nullptr) [[unlikely]]
-            state_.trace->survive_on_throughput(strength);
+            state_.trace->survive_on_throughput(survival);
         return true;
     }
 

@@ -27,13 +27,15 @@ class VolumePathBranches : protected VolumePathLights<Stream> {
         return false;
     }
 
-    // A vertex that a guide learns from. Returns false if Russian roulette ends the path by what its region (null: none)
-    // expects.
-    bool begin_guided(Point3f p, Facing facing, const GuidingRegion* region) {
+    // A vertex that a guide learns from. Returns false if Russian roulette ends the path: by what its region expects (null:
+    // there is none), or with this probability of `glossy` surfaces.
+    bool begin_guided(Point3f p, Facing facing, const GuidingRegion* region,
+                      std::optional<float> glossy = {}) {
         if (state_.trace != nullptr) [[unlikely]]
-            state_.trace->begin(p, facing, state_.carried(), state_.radiance);
+            state_.trace->begin(p, facing, glossy.has_value(), state_.carried(), state_.radiance);
         if (region == nullptr) return true;
-        const float survival = guided_survival(*region, state_.carried(), state_.depth, state_.expected);
+        const float survival =
+            glossy ? *glossy : guided_survival(*region, state_.carried(), state_.depth, state_.expected);
         if (!(survival < 1)) return true;
         const float u = stream_.next_1d();
         if (recorder_) recorder_.played_roulette({.survival = survival, .u = u});
@@ -44,14 +46,13 @@ class VolumePathBranches : protected VolumePathLights<Stream> {
         return true;
     }
 
-    // Continues by scatter() from a vertex of a region (null: none), where a guide may split the path. The branches that
-    // begin here but for one are taken up when that has ended.
+    // Continues by scatter() from a vertex, where a guide may split the path by what its region expects (null: none knows that).
+    // The branches that begin here but for one are taken up when that has ended.
     template <typename F>
-    void split(const GuidingRegion* region, const F& scatter) {
+    void split(const GuidingRegion* judge, const F& scatter) {
         if constexpr (std::same_as<Stream, SampleStream>)
-            if (region != nullptr && state_.trace == nullptr) {
-                const int count =
-                    guided_branches(*region, state_.carried(), state_.branches, state_.expected);
+            if (judge != nullptr && state_.trace == nullptr) {
+                const int count = guided_branches(*judge, state_.carried(), state_.branches, state_.expected);
                 if (count > 1) {
                     state_.split(count);
                     const Branch here{state_, stream_, body_events_, passages_};

@@ -28,9 +28,9 @@ class VolumePathLights {
     const GuidingRegion* guide_at(Point3f p, Facing facing) const {
         return guide_ != nullptr ? guide_->find(p, facing) : nullptr;
     }
-    // The density of a direction where scattering alone has the density `pdf`.
-    static float mixed_pdf(const GuidingRegion* region, Vec3f wi, float pdf) {
-        return region != nullptr ? region->mixed_pdf(region->pdf(wi), pdf) : pdf;
+    // The density of a direction from p where scattering alone has the density `pdf`.
+    static float mixed_pdf(const GuidingRegion* region, Point3f p, Vec3f wi, float pdf) {
+        return region != nullptr ? region->mixed_pdf(region->pdf(p, wi), pdf) : pdf;
     }
 
     // A light that the state's ray hit.
@@ -129,7 +129,7 @@ class VolumePathLights {
         const SampledSpectrum flight = state_.r_u * m.sigma_s * to_here.r_u;
         record.other_pdf = scene_.light_sampler->probability(here, chosen.light, chosen.part) * light->pdf *
                            average(flight * through->r_l) / before;
-        const float scatter_pdf = mixed_pdf(guide_at(here.p, Facing::medium), light->wi, phase);
+        const float scatter_pdf = mixed_pdf(guide_at(here.p, Facing::medium), here.p, light->wi, phase);
         record.bsdf_pdf = alone ? 0 : scatter_pdf * average(flight * through->r_u) / before;
         record.weight = path_weight(settings_, record.light_pdf,
                                     joint_density(settings_, record.bsdf_pdf, record.other_pdf));
@@ -175,7 +175,7 @@ class VolumePathLights {
         record.shadow = light->shadow;
         record.radiance = light->radiance;
         record.f = e.f;
-        record.bsdf_pdf = mixed_pdf(region, light->wi, e.pdf);
+        record.bsdf_pdf = mixed_pdf(region, state_.previous.p, light->wi, e.pdf);
         record.light_pdf = chosen.choice * light->pdf;
         if (is_black(e.f) || is_black(light->radiance)) return finish(Outcome::no_transport);
         if (state_.trace != nullptr) [[unlikely]]

@@ -24,21 +24,24 @@ Vec3f guide_vector(const nb::handle& given, const std::string& what) {
 }
 
 // The region of a point on a surface, or in a medium (None); null where no path has been.
-const GuidingRegion* guide_region(const Guide& guide, const nb::handle& point, const nb::handle& normal,
+const GuidingRegion* guide_region(const Guide& guide, Point3f p, const nb::handle& normal,
                                   const std::string& what) {
-    const Vec3f p = guide_vector(point, what + ", point");
     Facing facing = Facing::medium;
     if (!normal.is_none()) {
         const Vec3f n = guide_vector(normal, what + ", normal");
         if (!(length(n) > 0)) throw Error(what + ", normal", "expected a vector other than zero");
         facing = facing_of(n);
     }
-    return guide.field->find({p.x, p.y, p.z}, facing);
+    return guide.field->find(p, facing);
+}
+Point3f guide_point(const nb::handle& point, const std::string& what) {
+    return Point3f{} + guide_vector(point, what + ", point");
 }
 
 DoubleArray guide_pdf(const Guide& guide, const nb::object& point, const nb::object& normal,
                       const nb::object& directions) {
-    const GuidingRegion* region = guide_region(guide, point, normal, "Guide.pdf");
+    const Point3f p = guide_point(point, "Guide.pdf");
+    const GuidingRegion* region = guide_region(guide, p, normal, "Guide.pdf");
     const Rows w(directions, 3, "Guide.pdf, directions");
     NewArray out = new_array(w.shape());
     for (std::size_t i = 0; i < w.count(); ++i) {
@@ -46,13 +49,14 @@ DoubleArray guide_pdf(const Guide& guide, const nb::object& point, const nb::obj
         const double size = length(d);
         if (!(size > 0 && std::isfinite(size)))
             throw Error("Guide.pdf, directions", "expected directions that are neither zero nor infinite");
-        out.data[i] = region != nullptr ? static_cast<double>(region->pdf(Vec3f(d / size))) : 0;
+        out.data[i] = region != nullptr ? static_cast<double>(region->pdf(p, Vec3f(d / size))) : 0;
     }
     return out.array;
 }
 
 double guide_share(const Guide& guide, const nb::object& point, const nb::object& normal) {
-    const GuidingRegion* region = guide_region(guide, point, normal, "Guide.share");
+    const GuidingRegion* region =
+        guide_region(guide, guide_point(point, "Guide.share"), normal, "Guide.share");
     return region != nullptr ? static_cast<double>(region->share) : 0;
 }
 

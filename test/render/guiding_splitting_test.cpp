@@ -152,6 +152,49 @@ TEST(GuidingSplits, TreesAreBounded) {
     EXPECT_LE(most, path * most_branches_of_sample);
 }
 
+// What glossy surfaces scatter depends on the direction: no mean tells how much a path brings from there.
+TEST(GuidingSplits, GlossySurfacesDoNotSplit) {
+    SceneBuilder b = hidden_lamp(12);
+    for (Material& m : b.scene.materials)
+        m = ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(4)}, .roughness = alpha_of(0.3f)};
+    for (const bool fog : {false, true}) {
+        if (fog) {
+            b.scene.media.push_back(HomogeneousMedium{.sigma_s = 1e-6f});
+            b.scene.camera.medium = 0;
+        }
+        Guided guided(b);
+        guided.expect_little();
+        const std::vector<SampleContext::Key> keys = guided.keys(8);
+        const std::uint64_t before = guided.rays();
+        guided.take(keys);
+        const std::uint64_t path = 3 * (static_cast<std::uint64_t>(guided.settings().max_depth) + 1);
+        EXPECT_LE(guided.rays() - before, path * keys.size()) << fog;
+        if (!fog) {
+            EXPECT_EQ(std::ranges::max(guided.branches(keys.size())), 1);
+        }
+    }
+}
+
+// A clear pane in the slit costs little more than the light samples that it stops: between guided vertices roulette goes by
+// what is lost there, not by the little that a path carries into bright places. By that it would be 2.4.
+TEST(GuidingSplits, ClearPanesDoNotEndPaths) {
+    const auto mean_square = [](bool pane) {
+        SceneBuilder b = hidden_lamp(16);
+        b.description.integrator.max_depth = 24;
+        if (pane)
+            b.add_mesh(square(Transform::translate({0.8, 0.9, 0}) * Transform::rotate(90, {0, 1, 0}) *
+                              Transform::scale({1, 0.1, 1})),
+                       b.add(ThinDielectricMaterial{1.0001f}));
+        Guided guided(b);
+        RunningMoments squares;
+        for (const SampleContext::Result& r : guided.take(guided.keys(64)))
+            squares.add(std::pow(double(max_component(r.film.radiance)), 2));
+        return squares.mean();
+    };
+    const double with = mean_square(true), without = mean_square(false);
+    EXPECT_LT(with, 2.1 * without) << with << " " << without;
+}
+
 // A lit corner on black takes a hundredth of the picture: its pixels are a hundred times brighter than that, and expect
 // what their paths bring.
 TEST(GuidingSplits, BrightObjectsOnBlackExpectTheirLight) {

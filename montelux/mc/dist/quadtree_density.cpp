@@ -76,7 +76,8 @@ QuadtreeDensity::QuadtreeDensity(std::span<SquareSample> samples, const Quadtree
     if (!(mass > 0 && sums.square > 0) || !std::isfinite(mass) || !std::isfinite(sums.square)) return;
     nodes_.emplace_back();
     Builder builder{settings, nodes_, double(settings.split_share) * mass};
-    builder.fill(0, samples, sums.square, {0, 0}, 1, 1);
+    const double root = builder.fill(0, samples, sums.square, {0, 0}, 1, 1);
+    second_moment_ = root * root;
 }
 
 void QuadtreeDensity::save(ByteWriter& out) const {

@@ -46,6 +46,9 @@ class QuadtreeDensity {
     // under it is proportional to the root of the mean square of the value, of the function's noise too (Rath et al.
     // 2020, "Variance-Aware Path Guiding", section 4). Uniform if no value is above 0.
     QuadtreeDensity(std::span<SquareSample> samples, const QuadtreeSettings& settings);
+    // Of the estimator value / pdf over the samples that it has learned from, their noise included: in proportion to its
+    // second moment under this density. 0 if it has learned nothing.
+    double second_moment() const { return second_moment_; }
 
     // u is uniform in [0, 1)^2; strata of u stay connected.
     Sample sample(Vec2f u) const {
@@ -113,6 +116,7 @@ class QuadtreeDensity {
     static float below_one(float u) { return u < 0x1.fffffep-1f ? u : 0x1.fffffep-1f; }
 
     std::vector<Node> nodes_; // children follow their parents
+    double second_moment_ = 0;
 };
 
 } // namespace montelux

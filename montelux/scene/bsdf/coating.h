@@ -69,7 +69,7 @@ struct CoatedDiffuseBsdf {
     SampledSpectrum base_albedo; // CoatingTable::base_albedo of the base's reflectance
 
     static constexpr const char* name = "coated diffuse, closed form";
-    static constexpr BsdfTraits traits{};
+    static constexpr BsdfTraits traits{.diffuse = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("eta", table->eta());

@@ -11,7 +11,7 @@ struct DiffuseBsdfOf {
     SpectrumOf<T> reflectance;
 
     static constexpr const char* name = "diffuse";
-    static constexpr BsdfTraits traits{};
+    static constexpr BsdfTraits traits{.diffuse = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("reflectance", reflectance);

@@ -14,7 +14,7 @@ struct DiffuseTransmissionBsdf {
     SampledSpectrum reflectance, transmittance;
 
     static constexpr const char* name = "diffuse transmission";
-    static constexpr BsdfTraits traits{.transmits = true};
+    static constexpr BsdfTraits traits{.transmits = true, .diffuse = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("reflectance", reflectance);

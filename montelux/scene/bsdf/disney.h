@@ -120,6 +120,7 @@ struct DisneyBsdf {
     // Rough always.
     bool is_specular() const { return false; }
     bool has_specular() const { return false; }
+    bool has_diffuse() const { return !is_black(lobes.base.color); }
     float transmitted_eta(Vec3f wo) const requires may_transmit { return lobes.transmitted_eta(wo); }
     SampledSpectrum albedo(Vec3f wo) const { return lobes.albedo(wo); }
 

@@ -1,4 +1,4 @@
-// least_alpha: how narrow the lobes of a BSDF are.
+// least_alpha, is_glossy: how narrow the lobes of a BSDF are.
 #pragma once
 
 #include <algorithm>
@@ -21,6 +21,24 @@ float least_alpha(const B& bsdf) {
         }
     });
     return least;
+}
+
+// Whether all that a BSDF scatters goes into narrow lobes, so that it depends much on wo: no diffuse lobe, and no
+// microfacets rougher than alpha = 0.4. Deltas, hair and measured BRDFs count as narrow.
+template <BsdfModel B>
+bool is_glossy(const B& bsdf) {
+    constexpr float most_alpha = 0.4f;
+    if constexpr (B::traits.diffuse) return false;
+    if constexpr (requires { bsdf.has_diffuse(); })
+        if (bsdf.has_diffuse()) return false;
+    bool narrow = true;
+    bsdf.visit_fields([&]<typename F>(const char*, const F& field) {
+        if constexpr (BsdfModel<F>)
+            narrow = narrow && is_glossy(field);
+        else if constexpr (requires { field.alpha_x; })
+            narrow = narrow && field.alpha_x * field.alpha_y <= most_alpha * most_alpha;
+    });
+    return narrow;
 }
 
 } // namespace montelux

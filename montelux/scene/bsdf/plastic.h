@@ -60,7 +60,7 @@ struct PlasticBsdf {
     SampledSpectrum reflected;   // factor of the interface's reflection, 0 to 1
 
     static constexpr const char* name = "plastic";
-    static constexpr BsdfTraits traits{};
+    static constexpr BsdfTraits traits{.diffuse = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("eta", table->eta());

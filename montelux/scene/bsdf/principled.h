@@ -97,6 +97,7 @@ struct PrincipledBsdf {
 
     bool is_specular() const { return layers.is_specular(); }
     bool has_specular() const { return layers.has_specular(); }
+    bool has_diffuse() const { return !is_black(layers.diffuse); }
     float transmitted_eta(Vec3f wo) const requires may_transmit { return layers.transmitted_eta(wo); }
     SampledSpectrum albedo(Vec3f wo) const { return layers.albedo(wo); }
 

@@ -31,7 +31,7 @@ struct SubsurfaceBsdf {
     static SubsurfaceBsdf make(float eta, Ggx ggx) { return {eta, internal_diffuse_reflectance(eta), ggx}; }
 
     static constexpr const char* name = "subsurface";
-    static constexpr BsdfTraits traits{.transmits = true, .uses_tangents = true};
+    static constexpr BsdfTraits traits{.transmits = true, .uses_tangents = true, .diffuse = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("eta", eta);

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <variant>
 
 #include "montelux/mc/math/frame.h"
 #include "montelux/mc/random/stream.h"
@@ -18,11 +19,11 @@ namespace montelux {
 // not specular is that of both together: the balance heuristic (Veach and Guibas 1995). The BSDF is not specular; wo
 // is in its frame. `trace`, unless null, gets the direction.
 template <BsdfModel B, RandomStream Stream>
-std::optional<BsdfSample> sample_guided(const B& bsdf, const Frame& frame, Vec3f wo,
+std::optional<BsdfSample> sample_guided(const B& bsdf, const Frame& frame, Point3f p, Vec3f wo,
                                         const GuidingRegion& region, Stream& stream, GuidingTrace* trace) {
     const float u = stream.next_1d();
     if (u < region.share) {
-        const GuidingRegion::Direction d = region.sample(stream.next_2d());
+        const GuidingRegion::Direction d = region.sample(p, stream.next_2d());
         BsdfSample s;
         s.wi = frame.to_local(d.wi);
         const BsdfEvaluation e = bsdf.evaluate(wo, s.wi, TransportMode::radiance, stream);
@@ -43,7 +44,7 @@ std::optional<BsdfSample> sample_guided(const B& bsdf, const Frame& frame, Vec3f
         return s;
     }
     const Vec3f wi = frame.to_world(s->wi);
-    const float bsdf_pdf = s->pdf, guide_pdf = region.pdf(wi);
+    const float bsdf_pdf = s->pdf, guide_pdf = region.pdf(p, wi);
     s->pdf = region.mixed_pdf(guide_pdf, bsdf_pdf);
     s->weight *= bsdf_pdf / s->pdf;
     if (trace != nullptr) trace->scatter(wi, s->pdf, bsdf_pdf, guide_pdf);
@@ -56,13 +57,14 @@ struct GuidedDirection {
     float pdf = 0, weight = 1;
 };
 template <PhaseModel P, RandomStream Stream>
-GuidedDirection sample_guided(const P& phase, Vec3f wo, const GuidingRegion& region, Stream& stream,
-                              GuidingTrace* trace) {
+GuidedDirection sample_guided(const P& phase, Point3f p, Vec3f wo, const GuidingRegion& region,
+                              Stream& stream, GuidingTrace* trace) {
     const float u = stream.next_1d();
     const Vec2f u_direction = stream.next_2d();
     const bool from_guide = u < region.share;
-    const Vec3f wi = normalize(from_guide ? region.sample(u_direction).wi : phase.sample(wo, u_direction).wi);
-    const float phase_pdf = phase.pdf(wo, wi), guide_pdf = region.pdf(wi);
+    const Vec3f wi =
+        normalize(from_guide ? region.sample(p, u_direction).wi : phase.sample(wo, u_direction).wi);
+    const float phase_pdf = phase.pdf(wo, wi), guide_pdf = region.pdf(p, wi);
     const float pdf = region.mixed_pdf(guide_pdf, phase_pdf);
     if (trace != nullptr) trace->scatter(wi, pdf, phase_pdf, guide_pdf);
     return {wi, pdf, phase_pdf / pdf};
@@ -81,6 +83,16 @@ inline float guided_survival(const GuidingRegion& region, SampledSpectrum throug
     constexpr float least = 0.3f;
     if (depth <= 2 || !(expected > 0)) return 1;
     return std::min(1.0f, std::max(expected_share(region, throughput, expected), least));
+}
+
+// The same at a glossy vertex, where the region does not know what the path can bring: what is not absorbed on average.
+// The weight of a direction does not count, or roulette would end paths that reach strong light by a weak lobe.
+template <typename Bsdf>
+float glossy_survival(const Bsdf& bsdf, Vec3f wo, int depth) {
+    constexpr float least = 0.3f;
+    if (depth <= 2) return 1;
+    const float albedo = max_value(std::visit([&](const auto& b) { return b.albedo(wo); }, bsdf));
+    return std::clamp(albedo, least, 1.0f);
 }
 
 // The probability that Russian roulette lets a light sample live which brings `contribution` unless something occludes

@@ -1,5 +1,6 @@
 #include "montelux/transport/guiding/guiding_field.h"
 
+#include <cmath>
 #include <limits>
 #include <span>
 
@@ -44,6 +45,7 @@ void GuidingField::save(ByteWriter& out) const {
     }
     out.put(static_cast<std::uint64_t>(regions_.size()));
     for (const GuidingRegion& region : regions_) {
+        out.put(region.sphere);
         region.directions.save(out);
         out.put(region.share);
         out.put(region.radiance);
@@ -69,7 +71,10 @@ GuidingField GuidingField::load(ByteReader& in) {
     damaged(regions > in.remaining());
     for (std::uint64_t i = 0; i < regions; ++i) {
         GuidingRegion& region = field.regions_.emplace_back();
+        region.sphere = in.get<ParallaxSphere>();
         region.directions = QuadtreeDensity::load(in);
+        const ParallaxSphere& s = region.sphere;
+        damaged(!(s.radius >= 0 && std::isfinite(s.radius + s.centre.x + s.centre.y + s.centre.z)));
         region.share = in.get<float>();
         region.radiance = in.get<float>();
         region.visible = in.get<float>();

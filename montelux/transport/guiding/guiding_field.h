@@ -11,6 +11,7 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/warp/equal_area_square.h"
 #include "montelux/scene/film/film_settings.h"
+#include "montelux/transport/guiding/parallax_sphere.h"
 
 namespace montelux {
 
@@ -27,20 +28,25 @@ inline Facing facing_of(Vec3f n) {
 
 // A part of space where all paths share one density of directions.
 struct GuidingRegion {
-    QuadtreeDensity directions; // on equal_area_square, world space
+    ParallaxSphere sphere;
+    QuadtreeDensity directions; // from its centre, on equal_area_square
     float share = 0;            // of the directions that are drawn from it; the others are the BSDF's
-    float radiance = 0;         // mean over vertices that are not specular of the radiance that they scatter
+    float radiance = 0;         // mean over vertices that are not glossy of the radiance that they scatter
     float visible = 1;          // share of the light samples that nothing occludes
 
     // Per solid angle.
-    float pdf(Vec3f wi) const { return directions.pdf(equal_area_sphere_to_square(wi)) * inv_four_pi_f; }
+    float pdf(Point3f p, Vec3f wi) const {
+        const ParallaxSphere::Mapped d = sphere.from_centre(p, wi);
+        return directions.pdf(equal_area_sphere_to_square(d.w)) * d.density * inv_four_pi_f;
+    }
     struct Direction {
         Vec3f wi;
         float pdf = 0;
     };
-    Direction sample(Vec2f u) const {
+    Direction sample(Point3f p, Vec2f u) const {
         const QuadtreeDensity::Sample s = directions.sample(u);
-        return {equal_area_square_to_sphere(s.p), s.pdf * inv_four_pi_f};
+        const ParallaxSphere::Mapped d = sphere.from_point(p, equal_area_square_to_sphere(s.p));
+        return {d.w, s.pdf * d.density * inv_four_pi_f};
     }
     // Density of directions that are drawn from both, where the BSDF has the density `bsdf_pdf`.
     float mixed_pdf(float guide_pdf, float bsdf_pdf) const {

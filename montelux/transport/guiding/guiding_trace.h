@@ -17,10 +17,12 @@ namespace montelux {
 struct GuidingRecord {
     Point3f p;
     Facing facing = Facing::medium;
-    Vec2f direction; // on equal_area_square
+    Vec2f direction;    // on equal_area_square
+    float distance = 0; // to the next vertex; 0: there is none
     // Of the radiance that the vertex scatters, mean of the wavelengths: all of it; that of the direction; and the part
     // of what the direction hit that next-event estimation is left to find.
     float radiance = 0, estimate = 0, left_to_light_samples = 0;
+    bool glossy = false;                 // what it scatters depends much on the direction: Vertex::is_glossy
     bool aimed = false, visible = false; // it has a light sample; the light could be seen
     // Of the direction, per solid angle; pdf is that of its mixture, 0 where a delta lobe or nothing was drawn.
     float pdf = 0, bsdf_pdf = 0, guide_pdf = 0;
@@ -53,8 +55,9 @@ class GuidingTrace {
     float unguided_pdf(float pdf) const {
         return more_likely_ > 0 ? static_cast<float>(double(pdf) / more_likely_) : 0;
     }
-    // A vertex that is not specular; its emission is in the radiance.
-    void begin(Point3f p, Facing facing, SampledSpectrum throughput, SampledSpectrum radiance) {
+    // A vertex that is not specular; its emission is in the radiance. `glossy`: what it scatters depends much on the
+    // direction, so that the mean of those around it says little.
+    void begin(Point3f p, Facing facing, bool glossy, SampledSpectrum throughput, SampledSpectrum radiance) {
         unguided_.arrive(double(average(radiance)));
         open_ = size_ < vertices_.size();
         full_ = !open_;
@@ -64,6 +67,7 @@ class GuidingTrace {
         v = {};
         v.p = p;
         v.facing = facing;
+        v.glossy = glossy;
         v.throughput = throughput;
         v.before = radiance;
     }
@@ -100,10 +104,12 @@ class GuidingTrace {
     }
     // The path has ended with this radiance. What a direction brings from the next vertex is what the vertices around
     // that one scatter on average, by the guide: much less noisy than the rest of the path (temporal differences;
-    // Dahm and Keller 2017, "Learning Light Transport the Reinforced Way"). Null: the rest of the path.
+    // Dahm and Keller 2017, "Learning Light Transport the Reinforced Way"). From a glossy vertex it is what the path found
+    // there: light that comes by reflection is not averaged away. Null: the rest of the path.
     void finish(SampledSpectrum radiance, const GuidingField* guide,
                 std::vector<GuidingRecord>& records) const {
-        for (std::size_t i = 0; i < size_; ++i) {
+        SampledSpectrum scattered{}; // by the next vertex
+        for (std::size_t i = size_; i-- > 0;) {
             const Vertex& v = vertices_[i];
             const Vertex* const next = i + 1 < size_ ? &vertices_[i + 1] : nullptr;
             const SampledSpectrum after = next != nullptr || seen_ ? v.after_light_sample : radiance;
@@ -113,13 +119,15 @@ class GuidingTrace {
             };
             const GuidingRegion* const around =
                 next != nullptr && guide != nullptr ? guide->find(next->p, next->facing) : nullptr;
-            const float estimate =
-                around == nullptr
-                    ? share(radiance - after)
-                    : share(next->before - after) + v.survival * share(next->throughput) * around->radiance;
-            records.push_back({v.p, v.facing, v.direction, share(radiance - v.before), estimate,
-                               share(v.left_to_light_samples), v.aimed, !is_black(after - v.before), v.pdf,
-                               v.bsdf_pdf, v.guide_pdf});
+            SampledSpectrum brought = radiance - after;
+            if (around != nullptr)
+                brought =
+                    next->before - after + (next->glossy ? scattered : next->throughput * around->radiance);
+            scattered = after - v.before + brought;
+            const float distance = next != nullptr ? length(next->p - v.p) : 0;
+            records.push_back({v.p, v.facing, v.direction, distance, share(radiance - v.before),
+                               v.survival * share(brought), share(v.left_to_light_samples), v.glossy, v.aimed,
+                               !is_black(after - v.before), v.pdf, v.bsdf_pdf, v.guide_pdf});
         }
     }
 
@@ -135,7 +143,7 @@ class GuidingTrace {
         Facing facing = Facing::medium;
         Vec2f direction;
         float pdf = 0, bsdf_pdf = 0, guide_pdf = 0, survival = 1;
-        bool aimed = false;
+        bool glossy = false, aimed = false;
         SampledSpectrum throughput{}; // of the path to it
         // Radiance of the path before its light sample, and after it.
         SampledSpectrum before{}, after_light_sample{};

@@ -96,6 +96,21 @@ TEST(QuadtreeDensity, NoisyRegionsGetTheRootOfTheirMeanSquare) {
     EXPECT_NEAR(left, 0.8, 0.02);
 }
 
+// The estimator value / pdf, weighted to the samples that the density was learned from.
+TEST(QuadtreeDensity, KnowsItsSecondMoment) {
+    const std::vector<SquareSample> samples = samples_of_peak(5000, 11);
+    std::vector<SquareSample> learned = samples;
+    const QuadtreeDensity density(learned, {.prior_samples = 0});
+    double sum = 0;
+    for (const SquareSample& s : samples)
+        sum += double(s.value) * double(s.value) / double(s.pdf) / double(density.pdf(s.p));
+    EXPECT_NEAR(density.second_moment(), sum, 1e-4 * sum);
+    // It is least for the finest squares.
+    std::vector<SquareSample> coarse = samples;
+    EXPECT_GT(QuadtreeDensity(coarse, {.prior_samples = 0, .max_depth = 2}).second_moment(), 1.5 * sum);
+    EXPECT_EQ(QuadtreeDensity().second_moment(), 0);
+}
+
 TEST(QuadtreeDensity, IsUniformWithoutAValue) {
     std::vector<SquareSample> samples{{{0.5f, 0.5f}, 0, 1}};
     const QuadtreeDensity density(samples, {});

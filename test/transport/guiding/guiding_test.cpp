@@ -52,9 +52,10 @@ TEST(GuidingField, LearnsWhereLightComesFrom) {
     const GuidingRegion* even = field.find({-0.6f, 0.1f, 0}, up);
     ASSERT_NE(lit, nullptr);
     ASSERT_NE(even, nullptr);
-    EXPECT_GT(lit->pdf(bright), 10 * lit->pdf(-bright));
-    EXPECT_LT(even->pdf(bright), 3 * inv_four_pi_f);
-    EXPECT_GT(even->pdf(bright), inv_four_pi_f / 3);
+    const Point3f p{0.6f, 0.1f, 0}, q{-0.6f, 0.1f, 0};
+    EXPECT_GT(lit->pdf(p, bright), 10 * lit->pdf(p, -bright));
+    EXPECT_LT(even->pdf(q, bright), 3 * inv_four_pi_f);
+    EXPECT_GT(even->pdf(q, bright), inv_four_pi_f / 3);
     EXPECT_NEAR(double(even->radiance), 1, 1e-3);
     // The other side of a floor has seen no path, nor has the air.
     EXPECT_EQ(field.find({0.6f, 0.1f, 0}, facing_of({0, 0, -1})), nullptr);
@@ -169,7 +170,7 @@ TEST(GuidingLearner, LearnsLightThatLightSamplesRarelyFind) {
         else
             EXPECT_LT(region.visible, 0.002f);
         EXPECT_GT(region.visible, 0);
-        const float pdf = region.pdf(bright);
+        const float pdf = region.pdf({0.5f, 0.5f, 0}, bright);
         if (visible)
             EXPECT_LT(pdf, 3 * inv_four_pi_f);
         else
@@ -177,10 +178,66 @@ TEST(GuidingLearner, LearnsLightThatLightSamplesRarelyFind) {
     }
 }
 
+// A lamp at arm's length above the floor, seen from all of one region: from each of its points in another direction.
+TEST(GuidingLearner, PointsOfARegionLookAtTheSamePlace) {
+    const Point3f lamp{0.1f, 0, 1};
+    constexpr float cosine = 0.98f; // of the cone that the lamp takes
+    const auto lists = [&](bool distances) {
+        auto records = floor_records(4000, 5);
+        for (auto& list : records)
+            for (GuidingRecord& r : list) {
+                const Vec3f wi = equal_area_square_to_sphere(r.direction);
+                const Vec3f to_lamp = lamp - r.p;
+                const bool hits = dot(wi, normalize(to_lamp)) > cosine;
+                r.estimate = hits ? 100.0f : 0.02f;
+                if (distances) r.distance = hits ? length(to_lamp) : 2;
+            }
+        return records;
+    };
+    const PixelBounds bounds{0, 0, 1, 1};
+    const GuidingField near = GuidingLearner::learn(lists(true), {}, bounds, {1.0f});
+    const GuidingField far = GuidingLearner::learn(lists(false), {}, bounds, {1.0f});
+    const Facing up = facing_of({0, 0, 1});
+    ASSERT_EQ(near.regions(), 1u);
+    EXPECT_GT(near.find({}, up)->sphere.radius, 0.5f);
+    EXPECT_EQ(far.find({}, up)->sphere.radius, 0);
+    for (const Point3f p : {Point3f{0, 0, 0}, Point3f{0.7f, 0.7f, 0}, Point3f{-0.8f, 0.5f, 0}}) {
+        const Vec3f wi = normalize(lamp - p);
+        EXPECT_GT(near.find(p, up)->pdf(p, wi), 3 * far.find(p, up)->pdf(p, wi));
+    }
+}
+
+// From a diffuse vertex comes what those around it scatter on average; from a glossy one what the path itself found.
+TEST(GuidingTrace, GlossyVerticesBringWhatTheirPathFound) {
+    const GuidingField field = floor_field(); // regions where x < 0 scatter 1
+    const Facing up = facing_of({0, 0, 1});
+    for (const bool glossy : {false, true}) {
+        GuidingTrace trace;
+        trace.clear();
+        trace.begin({0.5f, 0, 1}, facing_of({0, 0, -1}), false, SampledSpectrum(1), SampledSpectrum(0));
+        trace.survive(0.5f);
+        trace.scatter({0, 0, -1}, 1, 1, 1);
+        trace.arrive(SampledSpectrum(0.25f)); // of its light sample
+        // The throughput has been divided by the probability of surviving.
+        trace.begin({-0.6f, 0.1f, 0}, up, glossy, SampledSpectrum(2), SampledSpectrum(0.25f));
+        trace.scatter({0, 0, 1}, 1, 1, 1);
+        trace.arrive(SampledSpectrum(0.75f));
+        std::vector<GuidingRecord> records;
+        trace.finish(SampledSpectrum(6.75f), &field, records);
+        ASSERT_EQ(records.size(), 2u);
+        EXPECT_EQ(records[0].glossy, glossy);
+        EXPECT_FLOAT_EQ(records[0].estimate, 3); // no further vertex: what was found
+        EXPECT_NEAR(double(records[1].estimate), glossy ? 0.5 * (6.75 - 0.25) : 0.5 * 2, 2e-3);
+        EXPECT_FLOAT_EQ(records[1].distance, length(Point3f{0.5f, 0, 1} - Point3f{-0.6f, 0.1f, 0}));
+        EXPECT_EQ(records[0].distance, 0);
+    }
+}
+
 // The mean weight over directions of a diffuse surface is its albedo, and the reported density that of the directions.
 TEST(GuidedScattering, FollowsItsDensityAndKeepsTheAlbedo) {
     const GuidingField field = floor_field();
-    const GuidingRegion& region = *field.find({0.6f, 0.1f, 0}, facing_of({0, 0, 1}));
+    const Point3f p{0.6f, 0.1f, 0};
+    const GuidingRegion& region = *field.find(p, facing_of({0, 0, 1}));
     ASSERT_GT(region.share, 0);
     const Frame frame = Frame::from_normal({0, 0, 1});
     const DiffuseBsdf bsdf{SampledSpectrum(0.6f)};
@@ -190,12 +247,12 @@ TEST(GuidedScattering, FollowsItsDensityAndKeepsTheAlbedo) {
     for (int i = 0; i < count; ++i) {
         SampleStream numbers({.kind = SamplerKind::independent, .seed = 7}, 0, 0,
                              static_cast<std::uint64_t>(i));
-        const auto s = sample_guided(bsdf, frame, wo, region, numbers, nullptr);
+        const auto s = sample_guided(bsdf, frame, p, wo, region, numbers, nullptr);
         const double w = s ? double(average(s->weight)) : 0;
         if (s) {
             const Vec3f wi = frame.to_world(s->wi);
             const BsdfEvaluation e = bsdf.evaluate(wo, s->wi, TransportMode::radiance, numbers);
-            ASSERT_NEAR(double(s->pdf), double(region.mixed_pdf(region.pdf(wi), e.pdf)),
+            ASSERT_NEAR(double(s->pdf), double(region.mixed_pdf(region.pdf(p, wi), e.pdf)),
                         2e-3 * double(s->pdf));
         }
         sum += w;
@@ -259,7 +316,8 @@ TEST(GuidedScattering, TracesLightSamplesByWhatTheyBring) {
 // weights are those of a phase function of the mean 1.
 TEST(GuidedScattering, DirectionsFromPhaseFunctionsFollowTheirDensity) {
     const GuidingField field = floor_field();
-    const GuidingRegion& region = *field.find({0.6f, 0.1f, 0}, facing_of({0, 0, 1}));
+    const Point3f p{0.6f, 0.1f, 0};
+    const GuidingRegion& region = *field.find(p, facing_of({0, 0, 1}));
     const Vec3f wo = normalize(Vec3f{0.3f, -0.2f, 0.8f});
     for (const float g : {0.0f, 0.7f}) {
         const HenyeyGreenstein phase{g};
@@ -269,17 +327,17 @@ TEST(GuidedScattering, DirectionsFromPhaseFunctionsFollowTheirDensity) {
         const TestResult r = rectangle_chi_squared_test(
             [&](Vec2f) {
                 SampleStream numbers({.kind = SamplerKind::independent, .seed = 9}, 0, 0, i++);
-                const GuidedDirection d = sample_guided(phase, wo, region, numbers, nullptr);
-                const float pdf = region.mixed_pdf(region.pdf(d.wi), phase.pdf(wo, d.wi));
+                const GuidedDirection d = sample_guided(phase, p, wo, region, numbers, nullptr);
+                const float pdf = region.mixed_pdf(region.pdf(p, d.wi), phase.pdf(wo, d.wi));
                 off += !(std::abs(d.pdf - pdf) <= 1e-3f * pdf) || !(std::abs(length(d.wi) - 1) < 1e-5f);
                 off += !(std::abs(d.weight * pdf - phase.pdf(wo, d.wi)) <= 1e-3f * pdf);
                 weights += double(d.weight);
                 squares += double(d.weight) * double(d.weight);
                 return equal_area_sphere_to_square(d.wi);
             },
-            [&](Vec2d p) {
-                const Vec3f wi = equal_area_square_to_sphere(Vec2f(p));
-                return double(region.mixed_pdf(region.pdf(wi), phase.pdf(wo, wi))) * 4 * pi;
+            [&](Vec2d v) {
+                const Vec3f wi = equal_area_square_to_sphere(Vec2f(v));
+                return double(region.mixed_pdf(region.pdf(p, wi), phase.pdf(wo, wi))) * 4 * pi;
             },
             {0, 0}, {1, 1}, {.samples = 100000, .cells_x = 16, .cells_y = 16});
         EXPECT_TRUE(r.passes(significance)) << g << ": " << r.description;
