@@ -134,7 +134,7 @@ struct PathIntegrator::Vertex {
             state.trace->survive(std::min(survival, 1.0f));
         return true;
     }
-    // On the throughput to the film, or on what is left of it since a guide last played its own; not where it has.
+    // On the throughput to the film, or on what is left of it since the last vertex with a region; none at one.
     bool survives() const {
         const float strength = state.strength(state.throughput);
         if (!(strength > 0)) {

@@ -26,7 +26,7 @@ struct PathState {
     float bsdf_pdf = 0;      // of the ray's direction there
     // Of throughputs in Russian roulette: squared index of refraction along the path, times the branches it is one of.
     float roulette_scale = 1;
-    // strength() after the last vertex where a guide played Russian roulette; 1 before that.
+    // strength() after the last vertex with a GuidingRegion; 1 before that.
     float guided_strength = 1;
     int depth = 0;                  // scattering events so far
     bool sees_lights = true;        // no other strategy can find the light that the ray hits

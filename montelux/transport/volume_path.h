@@ -177,7 +177,9 @@ class VolumePath : private VolumePathBranches<Stream> {
         const Vec3f wo = -state_.ray.d;
         state_.previous = {p, {}, 0, Vec3f{}};
         const GuidingRegion* const region = in_body ? nullptr : guide_at(p, Facing::medium);
-        if (!in_body && !begin_guided(p, Facing::medium, region)) return;
+        if (!in_body &&
+            !begin_guided(p, Facing::medium, false, region, [&] { return this->survival_of(*region); }))
+            return;
         split(region, [&] { scatter_in_phase(p, wo, phase, region, in_body); });
     }
 
@@ -277,9 +279,10 @@ class VolumePath : private VolumePathBranches<Stream> {
                             !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
         const GuidingRegion* const region = guides ? guide_at(s.p, facing) : nullptr;
         const bool glossy = guides && std::visit([](const auto& b) { return is_glossy(b); }, surface.bsdf);
-        std::optional<float> survival;
-        if (glossy) survival = glossy_survival(surface.bsdf, wo, state_.depth);
-        if (guides && !begin_guided(s.p, facing, region, survival)) return;
+        if (guides && !begin_guided(s.p, facing, glossy, region, [&] {
+                return glossy ? glossy_survival(surface.bsdf, wo, state_.depth) : this->survival_of(*region);
+            }))
+            return;
         // What a glossy surface scatters depends on the direction: the mean of its region is no judge of it.
         split(glossy ? nullptr : region, [&] { continue_from(s, surface, wo, context, region, last); });
     }
@@ -352,8 +355,8 @@ class VolumePath : private VolumePathBranches<Stream> {
         end(PathEnd::left_scene);
     }
 
-    // Russian roulette on what the path carries to the film, or on what is left of it since a guide last played its own;
-    // none where that has been here. Returns false if the path ends.
+    // Russian roulette on what the path carries to the film, or on what is left of it since the last vertex with a region;
+    // none at one. Returns false if the path ends.
     bool survives(bool guided) {
         const float strength = state_.strength(state_.carried());
         if (!(strength > 0)) {

@@ -27,15 +27,17 @@ class VolumePathBranches : protected VolumePathLights<Stream> {
         return false;
     }
 
-    // A vertex that a guide learns from. Returns false if Russian roulette ends the path: by what its region expects (null:
-    // there is none), or with this probability of `glossy` surfaces.
-    bool begin_guided(Point3f p, Facing facing, const GuidingRegion* region,
-                      std::optional<float> glossy = {}) {
+    float survival_of(const GuidingRegion& region) const {
+        return guided_survival(region, state_.carried(), state_.depth, state_.expected);
+    }
+    // A vertex that a guide learns from. Returns false if Russian roulette ends the path, which plays with the probability
+    // chance() if there is a region.
+    template <typename F>
+    bool begin_guided(Point3f p, Facing facing, bool glossy, const GuidingRegion* region, const F& chance) {
         if (state_.trace != nullptr) [[unlikely]]
-            state_.trace->begin(p, facing, glossy.has_value(), state_.carried(), state_.radiance);
+            state_.trace->begin(p, facing, glossy, state_.carried(), state_.radiance);
         if (region == nullptr) return true;
-        const float survival =
-            glossy ? *glossy : guided_survival(*region, state_.carried(), state_.depth, state_.expected);
+        const float survival = chance();
         if (!(survival < 1)) return true;
         const float u = stream_.next_1d();
         if (recorder_) recorder_.played_roulette({.survival = survival, .u = u});
@@ -46,8 +48,8 @@ class VolumePathBranches : protected VolumePathLights<Stream> {
         return true;
     }
 
-    // Continues by scatter() from a vertex, where a guide may split the path by what its region expects (null: none knows that).
-    // The branches that begin here but for one are taken up when that has ended.
+    // Continues by scatter() from a vertex, where a guide may split the path by what its region expects (null: it is not
+    // known). The branches that begin here but for one are taken up when that has ended.
     template <typename F>
     void split(const GuidingRegion* judge, const F& scatter) {
         if constexpr (std::same_as<Stream, SampleStream>)

@@ -65,6 +65,20 @@ VolumeScene cloud_beside_lamp() {
 TEST(GuidingMediaSlowTest, IsUnbiasedInFog) { expect_guiding_is_unbiased(foggy_hidden_lamp(32)); }
 TEST(GuidingMedia, IsUnbiasedInClouds) { expect_guiding_is_unbiased(cloud_beside_lamp()); }
 
+// A floor like a blurred mirror.
+SceneBuilder polished_hidden_lamp(bool fog) {
+    SceneBuilder b = fog ? foggy_hidden_lamp(32) : hidden_lamp(32);
+    const RoughnessParameter polished{FloatParameter{0.1f}, FloatParameter{0.1f}, false};
+    const Index metal =
+        b.add(ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(4)}, .roughness = polished});
+    b.scene.shapes[0].material = metal;
+    return b;
+}
+TEST(Guiding, IsUnbiasedBesidePolishedMetal) { expect_guiding_is_unbiased(polished_hidden_lamp(false)); }
+TEST(GuidingMediaSlowTest, IsUnbiasedBesidePolishedMetal) {
+    expect_guiding_is_unbiased(polished_hidden_lamp(true));
+}
+
 TEST(GuidingMedia, AnyNumberOfThreads) {
     SceneBuilder b = foggy_hidden_lamp(16);
     b.description.sampler.spp = 16;

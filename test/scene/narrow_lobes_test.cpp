@@ -16,10 +16,30 @@ TEST(NarrowLobes, GlossyBsdfsHaveNoOthers) {
     for (const char* name : {"conductor_smooth", "conductor_0_1", "conductor_anisotropic", "dielectric_0_2",
                              "layered_conductor", "hair", "measured", "dielectric_tilted"})
         EXPECT_TRUE(glossy.at(name)) << name;
-    for (const char* name :
-         {"diffuse", "conductor_0_5", "dielectric_0_6", "diffuse_transmission", "diffuse_transmission_tilted",
-          "coated_diffuse_0_1", "layered_diffuse_0_4", "subsurface"})
+    for (const char* name : {"diffuse", "conductor_0_5", "dielectric_0_6", "diffuse_transmission",
+                             "diffuse_transmission_tilted", "coated_diffuse_0_1", "layered_diffuse_0_4",
+                             "layered_conductor_fog", "subsurface", "disney", "disney_sheet"})
         EXPECT_FALSE(glossy.at(name)) << name;
+}
+
+TEST(NarrowLobes, PrincipledBsdfsByTheirLobes) {
+    PrincipledBsdf<true> b{};
+    b.layers.interface.ggx = {0.1f, 0.1f};
+    b.layers.coat_ggx = {0.1f, 0.1f};
+    const SampledSpectrum black(0), grey(0.3f);
+    PrincipledLayers& l = b.layers;
+    l.diffuse = l.transmitting = l.sheen_color = black;
+    EXPECT_TRUE(is_glossy(b));
+    for (SampledSpectrum* lobe : {&l.diffuse, &l.transmitting, &l.sheen_color}) {
+        *lobe = grey;
+        EXPECT_FALSE(is_glossy(b));
+        *lobe = black;
+    }
+    DisneySheetBsdf sheet{};
+    sheet.lobes.base.color = sheet.lobes.base.sheen_color = sheet.lobes.transmitting = black;
+    EXPECT_TRUE(is_glossy(sheet));
+    sheet.lobes.transmitting = grey;
+    EXPECT_FALSE(is_glossy(sheet));
 }
 
 TEST(NarrowLobes, LeastAlphaIsThatOfTheNarrowest) {

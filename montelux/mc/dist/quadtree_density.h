@@ -46,8 +46,8 @@ class QuadtreeDensity {
     // under it is proportional to the root of the mean square of the value, of the function's noise too (Rath et al.
     // 2020, "Variance-Aware Path Guiding", section 4). Uniform if no value is above 0.
     QuadtreeDensity(std::span<SquareSample> samples, const QuadtreeSettings& settings);
-    // Of the estimator value / pdf over the samples that it has learned from, their noise included: in proportion to its
-    // second moment under this density. 0 if it has learned nothing.
+    // The sum over the samples that it was learned from of value^2 / pdf over this density, but for `prior_samples`: in
+    // proportion to the second moment of the estimator value / density. 0 without samples, and after load().
     double second_moment() const { return second_moment_; }
 
     // u is uniform in [0, 1)^2; strata of u stay connected.

@@ -120,7 +120,11 @@ struct DisneyBsdf {
     // Rough always.
     bool is_specular() const { return false; }
     bool has_specular() const { return false; }
-    bool has_diffuse() const { return !is_black(lobes.base.color); }
+    bool has_diffuse() const {
+        bool crosses = false;
+        if constexpr (!requires { lobes.coat; }) crosses = !is_black(lobes.transmitting);
+        return crosses || !is_black(lobes.base.color) || !is_black(lobes.base.sheen_color);
+    }
     float transmitted_eta(Vec3f wo) const requires may_transmit { return lobes.transmitted_eta(wo); }
     SampledSpectrum albedo(Vec3f wo) const { return lobes.albedo(wo); }
 

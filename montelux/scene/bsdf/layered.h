@@ -43,6 +43,9 @@ struct LayeredBsdf {
         visit("base", base);
     }
 
+    bool has_diffuse() const {
+        return !is_black(medium_albedo);
+    } // light that the medium scatters; or the base
     bool is_specular() const { return coat.is_specular() && base.is_specular() && is_black(medium_albedo); }
     bool has_specular() const { return coat.is_specular(); }
     // Without interreflections between the layers.

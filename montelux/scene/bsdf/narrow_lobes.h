@@ -23,8 +23,9 @@ float least_alpha(const B& bsdf) {
     return least;
 }
 
-// Whether all that a BSDF scatters goes into narrow lobes, so that it depends much on wo: no diffuse lobe, and no
-// microfacets rougher than alpha = 0.4. Deltas, hair and measured BRDFs count as narrow.
+// Whether all that a BSDF scatters goes into narrow lobes, so that it depends much on wo: no diffuse lobe
+// (BsdfTraits::diffuse, or has_diffuse() where it depends on the fields), and no microfacets rougher than alpha = 0.4.
+// Deltas, hair and measured BRDFs count as narrow.
 template <BsdfModel B>
 bool is_glossy(const B& bsdf) {
     constexpr float most_alpha = 0.4f;

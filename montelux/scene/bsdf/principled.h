@@ -97,7 +97,9 @@ struct PrincipledBsdf {
 
     bool is_specular() const { return layers.is_specular(); }
     bool has_specular() const { return layers.has_specular(); }
-    bool has_diffuse() const { return !is_black(layers.diffuse); }
+    bool has_diffuse() const {
+        return !is_black(layers.diffuse) || !is_black(layers.transmitting) || !is_black(layers.sheen_color);
+    }
     float transmitted_eta(Vec3f wo) const requires may_transmit { return layers.transmitted_eta(wo); }
     SampledSpectrum albedo(Vec3f wo) const { return layers.albedo(wo); }
 

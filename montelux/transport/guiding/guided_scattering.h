@@ -81,7 +81,7 @@ inline float expected_share(const GuidingRegion& region, SampledSpectrum through
 inline float guided_survival(const GuidingRegion& region, SampledSpectrum throughput, int depth,
                              float expected) {
     constexpr float least = 0.3f;
-    if (depth <= 2 || !(expected > 0)) return 1;
+    if (depth <= 2 || !(expected > 0) || !region.knows_radiance()) return 1;
     return std::min(1.0f, std::max(expected_share(region, throughput, expected), least));
 }
 
@@ -111,7 +111,7 @@ inline float guided_light_survival(const GuidingRegion& region, SampledSpectrum 
 // expects, each with its part of the throughput. Branches share `most`, so that a sample never has more.
 inline int guided_branches(const GuidingRegion& region, SampledSpectrum throughput, int most,
                            float expected) {
-    if (!(expected > 0)) return 1;
+    if (!(expected > 0) || !region.knows_radiance()) return 1;
     const float wanted =
         std::min(expected_share(region, throughput, expected), float(most_branches_at_vertex));
     return wanted >= 2 ? std::min(static_cast<int>(wanted), std::max(most, 1)) : 1; // 1 for NaN

@@ -31,9 +31,10 @@ struct GuidingRegion {
     ParallaxSphere sphere;
     QuadtreeDensity directions; // from its centre, on equal_area_square
     float share = 0;            // of the directions that are drawn from it; the others are the BSDF's
-    float radiance = 0;         // mean over vertices that are not glossy of the radiance that they scatter
-    float visible = 1;          // share of the light samples that nothing occludes
+    float radiance = -1; // mean over vertices that are not glossy of what they scatter; below 0: not known
+    float visible = 1;   // share of the light samples that nothing occludes
 
+    bool knows_radiance() const { return radiance >= 0; }
     // Per solid angle.
     float pdf(Point3f p, Vec3f wi) const {
         const ParallaxSphere::Mapped d = sphere.from_centre(p, wi);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 #include <utility>
 
@@ -132,11 +131,11 @@ QuadtreeDensity density_of(std::span<const Found> found, const ParallaxSphere& s
 Point3f centre_of(Records records) {
     Vec3d sum;
     for (const GuidingRecord* r : records) sum += Vec3d(r->p - Point3f{});
-    return Point3f{} + Vec3f(sum / double(std::max<std::size_t>(records.size(), 1)));
+    return Point3f{} + Vec3f(sum / double(records.size()));
 }
 
-// The sphere from whose centre directions have the least noisy density, of those with the distances at which a fifth,
-// half and four fifths of the light was found, and of infinite ones.
+// The sphere from whose centre directions have the least noisy density, of those with the distances of the vertices
+// from which the first fifth, half and four fifths of the light came, and of infinite ones.
 ParallaxSphere best_sphere(std::span<const Found> found, Point3f centre, const QuadtreeSettings& settings) {
     constexpr std::size_t enough = 1000;
     constexpr double least_gain = 0.98;
@@ -160,7 +159,7 @@ ParallaxSphere best_sphere(std::span<const Found> found, Point3f centre, const Q
         while (next < shares.size() && below >= shares[next] * all) ++next;
         const ParallaxSphere sphere{centre, distance};
         const double moment = density_of(found, sphere, step, settings).second_moment();
-        if (moment < least) {
+        if (moment > 0 && moment < least) {
             least = moment;
             best = sphere;
         }
@@ -170,14 +169,18 @@ ParallaxSphere best_sphere(std::span<const Found> found, Point3f centre, const Q
 
 GuidingRegion learn_region(const Part& part, const QuadtreeSettings& settings) {
     GuidingRegion region;
-    double radiance = 0;
-    std::size_t counted = 0;
-    for (const GuidingRecord* r : part.own)
-        if (!r->glossy) {
-            radiance += double(r->radiance);
-            ++counted;
-        }
-    if (counted > 0) region.radiance = static_cast<float>(radiance / double(counted));
+    constexpr std::size_t least_vertices = 32;
+    for (const Records records : {part.own, part.around}) {
+        double radiance = 0;
+        std::size_t counted = 0;
+        for (const GuidingRecord* r : records)
+            if (!r->glossy) {
+                radiance += double(r->radiance);
+                ++counted;
+            }
+        if (counted > 0) region.radiance = static_cast<float>(radiance / double(counted));
+        if (counted >= least_vertices) break;
+    }
     std::size_t aimed = 0, visible = 0;
     for (const GuidingRecord* r : part.around) {
         aimed += r->aimed ? 1 : 0;
@@ -198,7 +201,7 @@ GuidingRegion learn_region(const Part& part, const QuadtreeSettings& settings) {
     if (found.empty()) return region;
     const auto most = static_cast<float>(double(most_of_mean) * sum / double(found.size()));
     for (Found& f : found) f.estimate = std::min(f.estimate, most);
-    region.sphere = best_sphere(found, centre_of(part.own), settings);
+    region.sphere = best_sphere(found, centre_of(part.own.empty() ? part.around : part.own), settings);
     region.directions = density_of(found, region.sphere, 1, settings);
     region.share = best_share(found);
     return region;

@@ -18,11 +18,11 @@ struct GuidingRecord {
     Point3f p;
     Facing facing = Facing::medium;
     Vec2f direction;    // on equal_area_square
-    float distance = 0; // to the next vertex; 0: there is none
+    float distance = 0; // straight to the next record's vertex; 0: there is none
     // Of the radiance that the vertex scatters, mean of the wavelengths: all of it; that of the direction; and the part
     // of what the direction hit that next-event estimation is left to find.
     float radiance = 0, estimate = 0, left_to_light_samples = 0;
-    bool glossy = false;                 // what it scatters depends much on the direction: Vertex::is_glossy
+    bool glossy = false; // what it scatters depends much on the direction: is_glossy of the BSDF
     bool aimed = false, visible = false; // it has a light sample; the light could be seen
     // Of the direction, per solid angle; pdf is that of its mixture, 0 where a delta lobe or nothing was drawn.
     float pdf = 0, bsdf_pdf = 0, guide_pdf = 0;
@@ -120,14 +120,15 @@ class GuidingTrace {
             const GuidingRegion* const around =
                 next != nullptr && guide != nullptr ? guide->find(next->p, next->facing) : nullptr;
             SampledSpectrum brought = radiance - after;
-            if (around != nullptr)
+            if (around != nullptr && (next->glossy || around->knows_radiance()))
                 brought =
                     next->before - after + (next->glossy ? scattered : next->throughput * around->radiance);
             scattered = after - v.before + brought;
             const float distance = next != nullptr ? length(next->p - v.p) : 0;
             records.push_back({v.p, v.facing, v.direction, distance, share(radiance - v.before),
-                               v.survival * share(brought), share(v.left_to_light_samples), v.glossy, v.aimed,
-                               !is_black(after - v.before), v.pdf, v.bsdf_pdf, v.guide_pdf});
+                               v.survival * share(brought), v.survival * share(v.left_to_light_samples),
+                               v.glossy, v.aimed, !is_black(after - v.before), v.pdf, v.bsdf_pdf,
+                               v.guide_pdf});
         }
     }
 

@@ -23,7 +23,7 @@ namespace {
 const Vec3f bright = normalize(Vec3f{1, 0, 1});
 
 // Records on the floor z = 0 of the square [-1, 1]^2; light comes from near `bright` where x > 0, evenly elsewhere.
-std::vector<std::vector<GuidingRecord>> floor_records(int count, std::uint64_t seed) {
+std::vector<std::vector<GuidingRecord>> floor_records(int count, std::uint64_t seed, float distance = 0) {
     TestUniforms u(seed);
     std::vector<std::vector<GuidingRecord>> lists(4);
     for (int i = 0; i < count; ++i) {
@@ -35,14 +35,15 @@ std::vector<std::vector<GuidingRecord>> floor_records(int count, std::uint64_t s
         r.pdf = r.bsdf_pdf = inv_four_pi_f;
         r.estimate = r.p.x > 0 ? (dot(wi, bright) > 0.95f ? 40.0f : 0.02f) : 1.0f;
         r.radiance = r.estimate;
+        r.distance = distance;
         lists[static_cast<std::size_t>(i) % lists.size()].push_back(r);
     }
     return lists;
 }
 
-GuidingField floor_field(std::size_t region_records = 4000) {
-    return GuidingLearner::learn(floor_records(100000, 1), {.region_records = region_records}, {0, 0, 1, 1},
-                                 {1.0f});
+GuidingField floor_field(std::size_t region_records = 4000, float distance = 0) {
+    return GuidingLearner::learn(floor_records(100000, 1, distance), {.region_records = region_records},
+                                 {0, 0, 1, 1}, {1.0f});
 }
 
 TEST(GuidingField, LearnsWhereLightComesFrom) {
@@ -73,26 +74,49 @@ TEST(GuidingField, FacingsAreTheNearestAxes) {
     EXPECT_EQ(facing_of({0, 0.5f, 1}), Facing::front);
 }
 
+// As if a wall beside the floor shone, so that some regions have a sphere.
+GuidingField near_field(std::size_t region_records, int count = 100000) {
+    auto lists = floor_records(count, 1);
+    for (auto& list : lists)
+        for (GuidingRecord& r : list) {
+            const Vec3f wi = equal_area_square_to_sphere(r.direction);
+            r.distance = (1.2f - r.p.x) / std::max(wi.x, 0.1f);
+            const Point3f seen = r.p + r.distance * wi;
+            r.estimate = wi.x > 0 && std::hypot(seen.y, seen.z - 0.3f) < 0.1f ? 40.0f : 0.02f;
+        }
+    return GuidingLearner::learn(lists, {.region_records = region_records}, {0, 0, 1, 1}, {1.0f});
+}
+
 TEST(GuidingField, IsTheSameForAnyNumberOfThreadsAndComesBackFromBytes) {
     std::vector<std::vector<std::uint8_t>> bytes;
     for (int threads : {1, 2, 7})
         with_threads(threads, [&] {
             ByteWriter out;
-            floor_field(500).save(out);
+            near_field(500).save(out);
             bytes.push_back(out.take());
         });
     EXPECT_EQ(bytes[0], bytes[1]);
     EXPECT_EQ(bytes[0], bytes[2]);
     ByteReader in(bytes[0]);
     ByteWriter again;
-    GuidingField::load(in).save(again);
+    const GuidingField loaded = GuidingField::load(in);
+    loaded.save(again);
     EXPECT_TRUE(in.at_end());
     EXPECT_EQ(again.take(), bytes[0]);
+    const GuidingField learned = near_field(500);
+    int spheres = 0;
+    for (float x = -0.95f; x < 1; x += 0.1f) {
+        const Point3f p{x, 0.1f, 0};
+        const Facing up = facing_of({0, 0, 1});
+        EXPECT_EQ(loaded.find(p, up)->pdf(p, bright), learned.find(p, up)->pdf(p, bright));
+        spheres += loaded.find(p, up)->sphere.radius > 0;
+    }
+    EXPECT_GT(spheres, 2);
 }
 
 TEST(GuidingField, DamagedBytesAreRefusedOrHarmless) {
     ByteWriter out;
-    GuidingLearner::learn(floor_records(3000, 1), {.region_records = 500}, {0, 0, 1, 1}, {1.0f}).save(out);
+    near_field(500, 3000).save(out);
     const std::vector<std::uint8_t> good = out.take();
     TestUniforms u(19);
     int refused = 0;
@@ -105,8 +129,11 @@ TEST(GuidingField, DamagedBytesAreRefusedOrHarmless) {
         try {
             ByteReader in(bytes);
             const GuidingField field = GuidingField::load(in);
-            for (int k = 0; k < 20; ++k)
-                field.find({u.next_float(), u.next_float(), 0}, facing_of({0, 0, 1}));
+            for (int k = 0; k < 20; ++k) {
+                const Point3f p{u.next_float(), u.next_float(), 0};
+                if (const GuidingRegion* region = field.find(p, facing_of({0, 0, 1})))
+                    region->pdf(p, region->sample(p, u.next_2f()).wi);
+            }
         } catch (const Error&) {
             ++refused;
         }
@@ -222,6 +249,7 @@ TEST(GuidingTrace, GlossyVerticesBringWhatTheirPathFound) {
         trace.begin({-0.6f, 0.1f, 0}, up, glossy, SampledSpectrum(2), SampledSpectrum(0.25f));
         trace.scatter({0, 0, 1}, 1, 1, 1);
         trace.arrive(SampledSpectrum(0.75f));
+        trace.meet_light(SampledSpectrum(8), 0.25f, 0.25f); // 6 of it are left to light samples
         std::vector<GuidingRecord> records;
         trace.finish(SampledSpectrum(6.75f), &field, records);
         ASSERT_EQ(records.size(), 2u);
@@ -230,6 +258,7 @@ TEST(GuidingTrace, GlossyVerticesBringWhatTheirPathFound) {
         EXPECT_NEAR(double(records[1].estimate), glossy ? 0.5 * (6.75 - 0.25) : 0.5 * 2, 2e-3);
         EXPECT_FLOAT_EQ(records[1].distance, length(Point3f{0.5f, 0, 1} - Point3f{-0.6f, 0.1f, 0}));
         EXPECT_EQ(records[0].distance, 0);
+        EXPECT_FLOAT_EQ(records[0].left_to_light_samples, 3); // over the throughput
     }
 }
 
