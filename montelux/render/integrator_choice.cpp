@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
+#include "montelux/mc/stats/jackknife.h"
 #include "montelux/render/check_render.h"
 #include "montelux/render/integrator_pilot.h"
 #include "montelux/render/sample_allocation.h"
@@ -29,8 +31,11 @@ constexpr double expected_work = 4;
 // Time of a ray over that of a ray of the path integrator: the upper end of what was measured, 0.7 to 2.2 and 1.1 to 2.2.
 // Path tracing wins in doubt.
 constexpr double bidirectional_ray = 1.8, metropolis_ray = 2;
-// So many times less time than path tracing must another integrator take: the estimates are uncertain.
-constexpr double least_advantage = 1.25;
+// So many times less time than path tracing must another integrator take, and that by two standard errors of the
+// logarithm of their ratio: a firefly of path tracing must not decide alone.
+constexpr double least_advantage = 1.25, certainty = 2;
+// The errors follow from what the ratio is without each of so many parts of the tiles.
+constexpr std::size_t jackknife_parts = 10;
 
 double ray_cost(IntegratorKind kind) {
     switch (kind) {
@@ -193,45 +198,91 @@ class Choice {
         return samples;
     }
 
-    void measure(std::size_t tile_count) {
+    // Of all integrators with a pilot, by some of the first tiles.
+    template <typename Use>
+    std::array<double, 3> variances(std::size_t tile_count, PilotMeasure by, const Use& uses) const {
         std::vector<std::size_t> ends, measured;
-        std::size_t end = 0;
-        for (std::size_t t = 0; t < tile_count; ++t) ends.push_back(end += pixel_count(tiles_[t]));
         std::vector<PilotPicture> pictures;
         for (std::size_t i = 0; i < kinds.size(); ++i)
             if (pilots_[i] && !pilots_[i]->picture().parts.empty()) {
                 measured.push_back(i);
                 pictures.push_back(pilots_[i]->picture());
                 for (PilotPart& part : pictures.back().parts) {
-                    part.first.resize(end);
-                    part.second.resize(end);
+                    part.first.clear();
+                    part.second.clear();
                 }
             }
-        const RenderTarget target = settings_.target(IntegratorKind::path);
-        const std::vector<double> of_picture = relative_variances(pictures, ends, PilotMeasure::picture);
-        const std::vector<double> variances =
-            target.error > 0 ? of_picture : relative_variances(pictures, ends, PilotMeasure::pixels);
-        for (std::size_t k = 0; k < measured.size(); ++k) {
-            const std::size_t i = measured[k];
+        std::size_t begin = 0, used = 0;
+        for (std::size_t t = 0; t < tile_count; ++t) {
+            const std::size_t end = begin + pixel_count(tiles_[t]);
+            if (uses(t)) {
+                for (std::size_t k = 0; k < measured.size(); ++k) {
+                    const PilotPicture& whole = pilots_[measured[k]]->picture();
+                    for (std::size_t p = 0; p < whole.parts.size(); ++p) {
+                        append(pictures[k].parts[p].first, whole.parts[p].first, begin, end);
+                        append(pictures[k].parts[p].second, whole.parts[p].second, begin, end);
+                    }
+                }
+                ends.push_back(used += end - begin);
+            }
+            begin = end;
+        }
+        const std::vector<double> found = relative_variances(pictures, ends, by);
+        std::array<double, 3> result{};
+        for (std::size_t k = 0; k < measured.size(); ++k) result[measured[k]] = found[k];
+        return result;
+    }
+    static void append(std::vector<float>& to, const std::vector<float>& from, std::size_t begin,
+                       std::size_t end) {
+        to.insert(to.end(), from.begin() + static_cast<std::ptrdiff_t>(begin),
+                  from.begin() + static_cast<std::ptrdiff_t>(end));
+    }
+
+    void measure(std::size_t tile_count) {
+        const auto all = [](std::size_t) { return true; };
+        const PilotMeasure by =
+            settings_.target(IntegratorKind::path).error > 0 ? PilotMeasure::picture : PilotMeasure::pixels;
+        picture_variances_ = variances(tile_count, PilotMeasure::picture, all);
+        const std::array<double, 3> of_samples = variances(tile_count, by, all);
+        for (std::size_t i = 0; i < kinds.size(); ++i) {
+            if (!pilots_[i] || pilots_[i]->picture().parts.empty()) continue;
             IntegratorChoice::Candidate& candidate = summary_.candidates[i];
             candidate.outcome = CandidateOutcome::measured;
-            candidate.effort = variances[k] * pilots_[i]->rays_per_sample() * ray_cost(kinds[i]);
+            candidate.effort = of_samples[i] * pilots_[i]->rays_per_sample() * ray_cost(kinds[i]);
             candidate.samples = static_cast<std::uint64_t>(pilots_[i]->samples());
-            picture_variances_[i] = of_picture[k];
         }
+        std::array<std::array<double, 3>, jackknife_parts> without;
+        for (std::size_t part = 0; part < jackknife_parts; ++part)
+            without[part] =
+                variances(tile_count, by, [&](std::size_t t) { return t % jackknife_parts != part; });
+        for (const std::size_t i : {bidirectional, metropolis}) ratio_errors_[i] = ratio_error(without, i);
+    }
+
+    // The standard error of the logarithm of path tracing's variance over that of another integrator.
+    static double ratio_error(const std::array<std::array<double, 3>, jackknife_parts>& without,
+                              std::size_t i) {
+        std::array<double, jackknife_parts> logarithms;
+        for (std::size_t part = 0; part < jackknife_parts; ++part) {
+            const double p = without[part][path], other = without[part][i];
+            if (!(p > 0 && other > 0)) return 0; // one of them has found no light: that decides
+            logarithms[part] = std::log(p / other);
+        }
+        return jackknife_error(logarithms);
     }
 
     std::size_t best() const {
         std::size_t chosen = path;
         const auto effort = [&](std::size_t i) { return summary_.candidates[i].effort; };
-        // 0: it found no light.
-        double bound =
-            effort(path) > 0 ? effort(path) / least_advantage : std::numeric_limits<double>::infinity();
-        for (const std::size_t i : {bidirectional, metropolis})
-            if (effort(i) > 0 && effort(i) < bound) {
+        double least = std::numeric_limits<double>::infinity();
+        for (const std::size_t i : {bidirectional, metropolis}) {
+            const double advantage = least_advantage * std::exp(certainty * ratio_errors_[i]);
+            // 0: it found no light.
+            const bool wins = effort(i) > 0 && (effort(path) == 0 || advantage * effort(i) < effort(path));
+            if (wins && effort(i) < least) {
                 chosen = i;
-                bound = effort(i);
+                least = effort(i);
             }
+        }
         return chosen;
     }
 
@@ -265,6 +316,7 @@ class Choice {
     std::array<std::optional<Renderer>, 3> renderers_;
     std::array<std::optional<IntegratorPilot>, 3> pilots_;
     std::array<double, 3> picture_variances_{};
+    std::array<double, 3> ratio_errors_{}; // of path tracing's effort over theirs: ratio_error()
     IntegratorChoice summary_;
     std::vector<std::string> refusals_;
 };

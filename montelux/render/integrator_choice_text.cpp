@@ -31,7 +31,8 @@ std::string choice_text(const IntegratorChoice& choice) {
         const double ratio = choice.time_ratio(c);
         if (!(ratio > 0)) continue;
         compared += (compared.empty() ? "to the same error " : ", ") + name + " would take " +
-                    times_text(ratio) + (compared.empty() ? " times as long" : " times");
+                    times_text(ratio) + (compared.empty() ? " times as long" : " times") +
+                    (ratio < 1 ? " (too uncertain)" : "");
     }
     if (compared.empty() && choice.cpu_seconds > 0 && !has_light) compared = "the pilot found no light";
     if (!compared.empty()) text += ": " + compared;
