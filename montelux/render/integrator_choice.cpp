@@ -79,6 +79,7 @@ std::vector<PixelBounds> shuffled_tiles(const PixelBounds& crop) {
     for (std::size_t i = 0; i < tiles.size(); ++i) keys.emplace_back(hash_key(0x70696c6f74, i), i);
     std::sort(keys.begin(), keys.end());
     std::vector<PixelBounds> shuffled;
+    shuffled.reserve(keys.size());
     for (const auto& [key, i] : keys) shuffled.push_back(tiles[i]);
     return shuffled;
 }

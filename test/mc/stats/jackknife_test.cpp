@@ -1,9 +1,9 @@
 // Standard errors from estimates without parts of the sample.
-#include "test/significance.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <vector>
 
+#include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/jackknife.h"
 #include "montelux/mc/stats/moments.h"
 

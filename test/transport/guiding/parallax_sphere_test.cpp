@@ -1,8 +1,9 @@
 // Directions from any point of a region, as directions from its centre.
-#include "test/significance.h"
 #include <cmath>
 #include <gtest/gtest.h>
+#include <vector>
 
+#include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/moments.h"
 #include "montelux/mc/warp/sphere.h"
 #include "montelux/transport/guiding/guiding_field.h"
