@@ -199,7 +199,7 @@ class Choice {
         return samples;
     }
 
-    // Of all integrators with a pilot, by some of the first tiles.
+    // Of all integrators with a pilot, by those of the first tiles that uses(tile) is true for.
     template <typename Use>
     std::array<double, 3> variances(std::size_t tile_count, PilotMeasure by, const Use& uses) const {
         std::vector<std::size_t> ends, measured;
@@ -207,31 +207,30 @@ class Choice {
         for (std::size_t i = 0; i < kinds.size(); ++i)
             if (pilots_[i] && !pilots_[i]->picture().parts.empty()) {
                 measured.push_back(i);
-                pictures.push_back(pilots_[i]->picture());
-                for (PilotPart& part : pictures.back().parts) {
-                    part.first.clear();
-                    part.second.clear();
-                }
+                pictures.push_back(part_of(pilots_[i]->picture(), tile_count, uses));
             }
-        std::size_t begin = 0, used = 0;
-        for (std::size_t t = 0; t < tile_count; ++t) {
-            const std::size_t end = begin + pixel_count(tiles_[t]);
-            if (uses(t)) {
-                for (std::size_t k = 0; k < measured.size(); ++k) {
-                    const PilotPicture& whole = pilots_[measured[k]]->picture();
-                    for (std::size_t p = 0; p < whole.parts.size(); ++p) {
-                        append(pictures[k].parts[p].first, whole.parts[p].first, begin, end);
-                        append(pictures[k].parts[p].second, whole.parts[p].second, begin, end);
-                    }
-                }
-                ends.push_back(used += end - begin);
-            }
-            begin = end;
-        }
+        std::size_t used = 0;
+        for (std::size_t t = 0; t < tile_count; ++t)
+            if (uses(t)) ends.push_back(used += pixel_count(tiles_[t]));
         const std::vector<double> found = relative_variances(pictures, ends, by);
         std::array<double, 3> result{};
         for (std::size_t k = 0; k < measured.size(); ++k) result[measured[k]] = found[k];
         return result;
+    }
+    template <typename Use>
+    PilotPicture part_of(PilotPicture picture, std::size_t tile_count, const Use& uses) const {
+        for (PilotPart& part : picture.parts)
+            for (std::vector<float>* values : {&part.first, &part.second}) {
+                std::vector<float> used;
+                std::size_t begin = 0;
+                for (std::size_t t = 0; t < tile_count; ++t) {
+                    const std::size_t end = begin + pixel_count(tiles_[t]);
+                    if (uses(t)) append(used, *values, begin, end);
+                    begin = end;
+                }
+                *values = std::move(used);
+            }
+        return picture;
     }
     static void append(std::vector<float>& to, const std::vector<float>& from, std::size_t begin,
                        std::size_t end) {
@@ -239,12 +238,18 @@ class Choice {
                   from.begin() + static_cast<std::ptrdiff_t>(end));
     }
 
+    // What efforts are compared by.
+    PilotMeasure measured_by() const {
+        return settings_.target(IntegratorKind::path).error > 0 ? PilotMeasure::picture
+                                                                : PilotMeasure::pixels;
+    }
     void measure(std::size_t tile_count) {
+        measured_tiles_ = tile_count;
         const auto all = [](std::size_t) { return true; };
-        const PilotMeasure by =
-            settings_.target(IntegratorKind::path).error > 0 ? PilotMeasure::picture : PilotMeasure::pixels;
         picture_variances_ = variances(tile_count, PilotMeasure::picture, all);
-        const std::array<double, 3> of_samples = variances(tile_count, by, all);
+        const std::array<double, 3> of_samples = measured_by() == PilotMeasure::picture
+                                                     ? picture_variances_
+                                                     : variances(tile_count, PilotMeasure::pixels, all);
         for (std::size_t i = 0; i < kinds.size(); ++i) {
             if (!pilots_[i] || pilots_[i]->picture().parts.empty()) continue;
             IntegratorChoice::Candidate& candidate = summary_.candidates[i];
@@ -252,32 +257,32 @@ class Choice {
             candidate.effort = of_samples[i] * pilots_[i]->rays_per_sample() * ray_cost(kinds[i]);
             candidate.samples = static_cast<std::uint64_t>(pilots_[i]->samples());
         }
-        std::array<std::array<double, 3>, jackknife_parts> without;
-        for (std::size_t part = 0; part < jackknife_parts; ++part)
-            without[part] =
-                variances(tile_count, by, [&](std::size_t t) { return t % jackknife_parts != part; });
-        for (const std::size_t i : {bidirectional, metropolis}) ratio_errors_[i] = ratio_error(without, i);
     }
 
-    // The standard error of the logarithm of path tracing's variance over that of another integrator.
-    static double ratio_error(const std::array<std::array<double, 3>, jackknife_parts>& without,
-                              std::size_t i) {
-        std::array<double, jackknife_parts> logarithms;
+    // The standard errors of the logarithms of path tracing's variance over those of the others. Not finite where one of
+    // them has all its light, or noise, from one part of the tiles: then nothing is certain.
+    std::array<double, 3> ratio_errors() const {
+        std::array<std::array<double, jackknife_parts>, 3> logarithms{};
         for (std::size_t part = 0; part < jackknife_parts; ++part) {
-            const double p = without[part][path], other = without[part][i];
-            if (!(p > 0 && other > 0)) return 0; // one of them has found no light: that decides
-            logarithms[part] = std::log(p / other);
+            const std::array<double, 3> without = variances(
+                measured_tiles_, measured_by(), [&](std::size_t t) { return t % jackknife_parts != part; });
+            for (const std::size_t i : {bidirectional, metropolis})
+                logarithms[i][part] = std::log(without[path]) - std::log(without[i]);
         }
-        return jackknife_error(logarithms);
+        std::array<double, 3> errors{};
+        for (const std::size_t i : {bidirectional, metropolis}) errors[i] = jackknife_error(logarithms[i]);
+        return errors;
     }
 
     std::size_t best() const {
         std::size_t chosen = path;
         const auto effort = [&](std::size_t i) { return summary_.candidates[i].effort; };
+        if (!(effort(bidirectional) > 0 || effort(metropolis) > 0)) return path;
+        const std::array<double, 3> errors = ratio_errors();
         double least = std::numeric_limits<double>::infinity();
         for (const std::size_t i : {bidirectional, metropolis}) {
-            const double advantage = least_advantage * std::exp(certainty * ratio_errors_[i]);
-            // 0: it found no light.
+            const double advantage = least_advantage * std::exp(certainty * errors[i]);
+            // 0: it found no light. Nothing is less than NaN.
             const bool wins = effort(i) > 0 && (effort(path) == 0 || advantage * effort(i) < effort(path));
             if (wins && effort(i) < least) {
                 chosen = i;
@@ -317,7 +322,7 @@ class Choice {
     std::array<std::optional<Renderer>, 3> renderers_;
     std::array<std::optional<IntegratorPilot>, 3> pilots_;
     std::array<double, 3> picture_variances_{};
-    std::array<double, 3> ratio_errors_{}; // of path tracing's effort over theirs: ratio_error()
+    std::size_t measured_tiles_ = 0;
     IntegratorChoice summary_;
     std::vector<std::string> refusals_;
 };

@@ -1,6 +1,7 @@
 // The templates of VolumePathIntegrator, for use with any random stream.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 
 #include "montelux/mc/warp/sphere.h"
@@ -370,12 +371,8 @@ class VolumePath : private VolumePathBranches<Stream> {
             state_.guided_strength = strength;
             return true;
         }
-        const float survival = strength / state_.guided_strength;
-        if (!(survival < 1) || state_.depth <= 1) return true;
-        const float u = stream_.next_1d();
-        if (recorder_) recorder_.played_roulette({.survival = survival, .u = u});
-        if (!(u < survival)) return end(PathEnd::roulette);
-        state_.throughput /= survival;
+        const float survival = state_.depth > 1 ? std::min(strength / state_.guided_strength, 1.0f) : 1;
+        if (!this->lives(survival)) return false;
         if (state_.trace != nullptr) [[unlikely]]
             state_.trace->survive_on_throughput(survival);
         return true;

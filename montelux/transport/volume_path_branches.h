@@ -1,6 +1,7 @@
 // VolumePathBranches: the branches of a path through media that a guide splits, followed one after another.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <optional>
 
@@ -37,14 +38,19 @@ class VolumePathBranches : protected VolumePathLights<Stream> {
         if (state_.trace != nullptr) [[unlikely]]
             state_.trace->begin(p, facing, glossy, state_.carried(), state_.radiance);
         if (region == nullptr) return true;
-        const float survival = chance();
+        const float survival = std::min(chance(), 1.0f);
+        if (!lives(survival)) return false;
+        if (state_.trace != nullptr) [[unlikely]]
+            state_.trace->survive(survival);
+        return true;
+    }
+    // Russian roulette. Returns false if the path ends.
+    bool lives(float survival) {
         if (!(survival < 1)) return true;
         const float u = stream_.next_1d();
         if (recorder_) recorder_.played_roulette({.survival = survival, .u = u});
         if (!(u < survival)) return end(PathEnd::roulette);
         state_.throughput /= survival;
-        if (state_.trace != nullptr) [[unlikely]]
-            state_.trace->survive(survival);
         return true;
     }
 
