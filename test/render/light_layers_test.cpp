@@ -1,13 +1,16 @@
 // Layers of light: direct and indirect light and the groups of lights sum to the mean, and are pictures of their own.
 #include "test/render/hidden_lamp.h"
 #include "test/render/layer_testing.h"
+#include "test/render/seed_means.h"
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/stats/moments.h"
 
 namespace montelux::testing {
 namespace {
@@ -135,6 +138,45 @@ TEST(Layers, LightGroupsAreThePicturesOfTheirLights) {
     const double error = std::hypot(expected.standard_error, picture_mean(state.film).standard_error);
     EXPECT_NEAR(sum / 144, expected.mean, 5 * error);
     EXPECT_GT(expected.mean, 10 * error);
+}
+
+// Guided paths split and end by the light of all lamps; each group is still the picture of its own. Student's test of 16
+// seeds at 7 standard errors (two-sided: 4e-6 each).
+TEST(Layers, LightGroupsOfGuidedPathsAreThePicturesOfTheirLights) {
+    const std::vector<std::string> groups = {"hidden", "near"};
+    SceneBuilder b = hidden_lamp(12);
+    b.add_mesh(square(Transform::translate({-0.5, 0.2, 0.95}) * Transform::rotate(180, {1, 0, 0}) *
+                      Transform::scale({0.1, 0.1, 1})),
+               b.add(DiffuseMaterial{gray(0)}), 0.5f);
+    b.scene.light_groups = groups;
+    SceneDescription d = b.description;
+    d.sampler.spp = 64;
+    d.integrator.guiding = Guiding::on;
+    d.film.layers.set = {Layer::light_groups};
+    std::vector<RunningMoments> guided(groups.size());
+    for (std::uint64_t seed = 0; seed < bidirectional_seeds; ++seed) {
+        d.sampler.seed = seed;
+        const RenderState state = render_state(d);
+        ASSERT_NE(state.guide, nullptr);
+        const Image image = state.film.develop();
+        for (std::size_t g = 0; g < groups.size(); ++g) {
+            double sum = 0;
+            for (int y = 0; y < 12; ++y)
+                for (int x = 0; x < 12; ++x)
+                    sum += image.value(x, y, *image.find_channel("light." + groups[g] + ".G"));
+            guided[g].add(sum / 144);
+        }
+    }
+    for (std::size_t g = 0; g < groups.size(); ++g) {
+        SceneBuilder alone = b;
+        std::get<AreaLight>(alone.scene.lights[1 - g]).scale = 0;
+        alone.description.sampler.seed = 1000;
+        const RunningMoments expected =
+            render_of_seeds(alone.description, IntegratorKind::path, 512).channel[1];
+        const double error = std::hypot(guided[g].standard_error(), expected.standard_error());
+        EXPECT_NEAR(guided[g].mean(), expected.mean(), 7 * error) << groups[g];
+        EXPECT_LT(error, 0.02 * expected.mean()) << groups[g]; // so that a bias would be seen
+    }
 }
 
 } // namespace

@@ -24,6 +24,9 @@ concept BsdfModel = std::is_trivially_copyable_v<B> && std::same_as<decltype(B::
     { b.is_specular() } -> std::same_as<bool>;
     // Some lobe is a delta.
     { b.has_specular() } -> std::same_as<bool>;
+    // Some lobe is broad: diffuse light, sheen, scattering below the surface. Guided paths split there (is_glossy in
+    // narrow_lobes.h); no estimate depends on it.
+    { b.has_diffuse() } -> std::same_as<bool>;
     // Directional albedo, possibly approximate: a feature for denoisers, not part of an estimate.
     { b.albedo(w) } -> std::same_as<SampledSpectrum>;
     { b.evaluate(w, w, mode, stream) } -> std::same_as<BsdfEvaluation>;

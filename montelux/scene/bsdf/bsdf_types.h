@@ -24,7 +24,6 @@ struct BsdfTraits {
     bool transmits = false;     // light may leave on the other side of the surface
     bool uses_tangents = false; // lobes may depend on the direction of the tangents
     bool stochastic = false;    // evaluate estimates the value by random walks
-    bool diffuse = false;       // some lobe always is; see is_glossy in narrow_lobes.h
 };
 
 // Value and density for a given pair of directions; lobes that are Dirac deltas count as zero in both.

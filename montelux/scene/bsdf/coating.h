@@ -69,7 +69,7 @@ struct CoatedDiffuseBsdf {
     SampledSpectrum base_albedo; // CoatingTable::base_albedo of the base's reflectance
 
     static constexpr const char* name = "coated diffuse, closed form";
-    static constexpr BsdfTraits traits{.diffuse = true};
+    static constexpr BsdfTraits traits{};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("eta", table->eta());
@@ -79,6 +79,7 @@ struct CoatedDiffuseBsdf {
 
     bool is_specular() const { return false; }
     bool has_specular() const { return table->coat().is_specular(); }
+    bool has_diffuse() const { return true; }
     SampledSpectrum albedo(Vec3f wo) const {
         float mu = abs_cos_theta(wo);
         return table->reflectance(mu) +

@@ -26,6 +26,7 @@ struct ConductorBsdfOf {
 
     bool is_specular() const { return normals.is_smooth(); }
     bool has_specular() const { return is_specular(); }
+    bool has_diffuse() const { return false; }
     SampledSpectrum albedo(Vec3f wo) const { return fresnel_conductor(abs_cos_theta(wo), eta, k); }
 
     template <typename Stream>

@@ -30,6 +30,7 @@ struct DielectricBsdfOf {
     // An index of 1 bends nothing, however rough the interface.
     bool is_specular() const { return eta == 1 || normals.is_smooth(); }
     bool has_specular() const { return is_specular(); }
+    bool has_diffuse() const { return false; }
     float transmitted_eta(Vec3f wo) const { return wo.z > 0 ? eta : 1 / eta; }
     SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
     // Of a smooth interface.

@@ -11,7 +11,7 @@ struct DiffuseBsdfOf {
     SpectrumOf<T> reflectance;
 
     static constexpr const char* name = "diffuse";
-    static constexpr BsdfTraits traits{.diffuse = true};
+    static constexpr BsdfTraits traits{};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("reflectance", reflectance);
@@ -19,6 +19,7 @@ struct DiffuseBsdfOf {
 
     bool is_specular() const { return false; }
     bool has_specular() const { return false; }
+    bool has_diffuse() const { return true; }
     SpectrumOf<T> albedo(Vec3<T>) const { return reflectance; }
 
     template <typename Stream>

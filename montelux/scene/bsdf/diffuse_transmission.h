@@ -14,7 +14,7 @@ struct DiffuseTransmissionBsdf {
     SampledSpectrum reflectance, transmittance;
 
     static constexpr const char* name = "diffuse transmission";
-    static constexpr BsdfTraits traits{.transmits = true, .diffuse = true};
+    static constexpr BsdfTraits traits{.transmits = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("reflectance", reflectance);
@@ -23,6 +23,7 @@ struct DiffuseTransmissionBsdf {
 
     bool is_specular() const { return false; }
     bool has_specular() const { return false; }
+    bool has_diffuse() const { return true; }
     float transmitted_eta(Vec3f) const { return 1; }
     SampledSpectrum albedo(Vec3f) const { return reflectance + transmittance; }
 

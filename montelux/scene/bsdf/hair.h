@@ -46,6 +46,7 @@ struct HairBsdf {
 
     bool is_specular() const { return false; }
     bool has_specular() const { return false; }
+    bool has_diffuse() const { return false; }
     float transmitted_eta(Vec3f) const { return 1; } // paths enter and leave the hair within it
     SampledSpectrum albedo(Vec3f wo) const;
 

@@ -43,11 +43,10 @@ struct LayeredBsdf {
         visit("base", base);
     }
 
-    bool has_diffuse() const {
-        return !is_black(medium_albedo);
-    } // light that the medium scatters; or the base
     bool is_specular() const { return coat.is_specular() && base.is_specular() && is_black(medium_albedo); }
     bool has_specular() const { return coat.is_specular(); }
+    // The base, and light that the medium scatters.
+    bool has_diffuse() const { return base.has_diffuse() || !is_black(medium_albedo); }
     // Without interreflections between the layers.
     SampledSpectrum albedo(Vec3f wo) const {
         float r = fresnel_dielectric(abs_cos_theta(wo), facets_of_coat().eta);

@@ -73,6 +73,7 @@ struct MeasuredBsdf {
 
     bool is_specular() const { return false; }
     bool has_specular() const { return false; }
+    bool has_diffuse() const { return false; }
     SampledSpectrum albedo(Vec3f wo) const { return brdf->albedo(wo, lambda); }
 
     template <typename Stream>

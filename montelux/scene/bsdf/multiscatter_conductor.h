@@ -24,6 +24,7 @@ struct MultiscatterConductorBsdf {
 
     bool is_specular() const { return facets.is_specular(); }
     bool has_specular() const { return facets.has_specular(); }
+    bool has_diffuse() const { return facets.has_diffuse(); }
     SampledSpectrum albedo(Vec3f wo) const { return facets.albedo(wo); }
 
     template <typename Stream>

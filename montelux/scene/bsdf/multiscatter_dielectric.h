@@ -26,6 +26,7 @@ struct MultiscatterDielectricBsdf {
 
     bool is_specular() const { return facets.is_specular(); }
     bool has_specular() const { return facets.has_specular(); }
+    bool has_diffuse() const { return facets.has_diffuse(); }
     float transmitted_eta(Vec3f wo) const { return facets.transmitted_eta(wo); }
     SampledSpectrum albedo(Vec3f wo) const { return facets.albedo(wo); }
 

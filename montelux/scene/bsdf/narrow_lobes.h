@@ -24,14 +24,11 @@ float least_alpha(const B& bsdf) {
 }
 
 // Whether all that a BSDF scatters goes into narrow lobes, so that it depends much on wo: no diffuse lobe
-// (BsdfTraits::diffuse, or has_diffuse() where it depends on the fields), and no microfacets rougher than alpha = 0.4.
-// Deltas, hair and measured BRDFs count as narrow.
+// and no microfacets rougher than alpha = 0.4. Deltas, hair and measured BRDFs count as narrow.
 template <BsdfModel B>
 bool is_glossy(const B& bsdf) {
     constexpr float most_alpha = 0.4f;
-    if constexpr (B::traits.diffuse) return false;
-    if constexpr (requires { bsdf.has_diffuse(); })
-        if (bsdf.has_diffuse()) return false;
+    if (bsdf.has_diffuse()) return false;
     bool narrow = true;
     bsdf.visit_fields([&]<typename F>(const char*, const F& field) {
         if constexpr (BsdfModel<F>)

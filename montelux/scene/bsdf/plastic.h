@@ -60,7 +60,7 @@ struct PlasticBsdf {
     SampledSpectrum reflected;   // factor of the interface's reflection, 0 to 1
 
     static constexpr const char* name = "plastic";
-    static constexpr BsdfTraits traits{.diffuse = true};
+    static constexpr BsdfTraits traits{};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("eta", table->eta());
@@ -71,6 +71,7 @@ struct PlasticBsdf {
 
     bool is_specular() const { return false; }
     bool has_specular() const { return interface().is_specular(); }
+    bool has_diffuse() const { return true; }
     SampledSpectrum albedo(Vec3f wo) const {
         const float t = table->transmittance(abs_cos_theta(wo));
         return (1 - t) * reflected + t * table->mean_transmittance() * base_albedo;

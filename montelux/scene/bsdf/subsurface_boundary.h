@@ -31,7 +31,7 @@ struct SubsurfaceBsdf {
     static SubsurfaceBsdf make(float eta, Ggx ggx) { return {eta, internal_diffuse_reflectance(eta), ggx}; }
 
     static constexpr const char* name = "subsurface";
-    static constexpr BsdfTraits traits{.transmits = true, .uses_tangents = true, .diffuse = true};
+    static constexpr BsdfTraits traits{.transmits = true, .uses_tangents = true};
     template <typename Visit>
     void visit_fields(Visit&& visit) const {
         visit("eta", eta);
@@ -41,6 +41,7 @@ struct SubsurfaceBsdf {
 
     bool is_specular() const { return false; }
     bool has_specular() const { return ggx.is_smooth(); }
+    bool has_diffuse() const { return true; }
     float transmitted_eta(Vec3f wo) const { return wo.z > 0 ? eta : 1 / eta; }
     SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
 

@@ -20,6 +20,7 @@ struct ThinDielectricBsdf {
 
     bool is_specular() const { return true; }
     bool has_specular() const { return true; }
+    bool has_diffuse() const { return false; }
     float transmitted_eta(Vec3f) const { return 1; }
     SampledSpectrum albedo(Vec3f) const { return SampledSpectrum(1); }
     // The geometric series of bounces inside the slab (Stokes): R + T R T + T R R R T + ...

@@ -23,6 +23,9 @@ bool TiltedBsdf::is_specular() const {
 bool TiltedBsdf::has_specular() const {
     return std::visit([](const auto& b) { return b.has_specular(); }, base);
 }
+bool TiltedBsdf::has_diffuse() const {
+    return std::visit([](const auto& b) { return b.has_diffuse(); }, base);
+}
 bool TiltedBsdf::is_stochastic() const {
     return std::visit([](const auto& b) { return b.traits.stochastic; }, base);
 }

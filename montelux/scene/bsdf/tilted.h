@@ -28,6 +28,7 @@ struct TiltedBsdf {
 
     bool is_specular() const;
     bool has_specular() const;
+    bool has_diffuse() const;
     float transmitted_eta(Vec3f wo) const;
     SampledSpectrum albedo(Vec3f wo) const;
 

@@ -27,6 +27,7 @@ struct TintedBsdf {
 
     bool is_specular() const { return interface.is_specular(); }
     bool has_specular() const { return interface.has_specular(); }
+    bool has_diffuse() const { return interface.has_diffuse(); }
     float transmitted_eta(Vec3f wo) const requires(traits.transmits) { return interface.transmitted_eta(wo); }
     SampledSpectrum albedo(Vec3f wo) const {
         if constexpr (traits.transmits)
