@@ -147,10 +147,10 @@ TEST(Layers, LightGroupsOfGuidedPathsAreThePicturesOfTheirLights) {
     SceneBuilder b = hidden_lamp(12);
     b.add_mesh(square(Transform::translate({-0.5, 0.2, 0.95}) * Transform::rotate(180, {1, 0, 0}) *
                       Transform::scale({0.1, 0.1, 1})),
-               b.add(DiffuseMaterial{gray(0)}), 0.5f);
+               b.add(DiffuseMaterial{gray(0)}), 4);
     b.scene.light_groups = groups;
     SceneDescription d = b.description;
-    d.sampler.spp = 64;
+    d.sampler.spp = 128;
     d.integrator.guiding = Guiding::on;
     d.film.layers.set = {Layer::light_groups};
     std::vector<RunningMoments> guided(groups.size());
