@@ -66,10 +66,15 @@ TEST(Layers, OfGuidedPathsSumToTheMean) {
     for (SceneBuilder b : {hidden_lamp(12, 0.7f, 1), layered_scene(), foggy_scene()}) {
         b.description.sampler.spp = 64;
         b.description.integrator.guiding = Guiding::on;
-        b.description.film.layers.set = {Layer::direct, Layer::indirect};
+        b.description.film.layers.set = {Layer::direct, Layer::indirect, Layer::light_groups};
         const RenderState state = render_state(b.description);
         ASSERT_NE(state.guide, nullptr);
-        EXPECT_LT(distance_from_mean(state.film.develop(), {"direct", "indirect"}), 1e-5);
+        const Image image = state.film.develop();
+        EXPECT_LT(distance_from_mean(image, {"direct", "indirect"}), 1e-5);
+        std::vector<std::string> groups;
+        for (const std::string& group : state.film.layers().light_groups())
+            groups.push_back("light." + group);
+        EXPECT_LT(distance_from_mean(image, groups), 1e-5);
     }
 }
 
@@ -141,7 +146,8 @@ TEST(Layers, LightGroupsAreThePicturesOfTheirLights) {
 }
 
 // Guided paths split and end by the light of all lamps; each group is still the picture of its own. Student's test of 16
-// seeds at 7 standard errors (two-sided: 4e-6 each).
+// seeds at 7 standard errors (two-sided: 4e-6 each): light of more than 14 % of a group in another one is seen, and the
+// test above sees lost light.
 TEST(Layers, LightGroupsOfGuidedPathsAreThePicturesOfTheirLights) {
     const std::vector<std::string> groups = {"hidden", "near"};
     SceneBuilder b = hidden_lamp(12);
@@ -154,7 +160,8 @@ TEST(Layers, LightGroupsOfGuidedPathsAreThePicturesOfTheirLights) {
     d.integrator.guiding = Guiding::on;
     d.film.layers.set = {Layer::light_groups};
     std::vector<RunningMoments> guided(groups.size());
-    for (std::uint64_t seed = 0; seed < bidirectional_seeds; ++seed) {
+    constexpr int seeds = 16;
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
         d.sampler.seed = seed;
         const RenderState state = render_state(d);
         ASSERT_NE(state.guide, nullptr);
@@ -172,10 +179,11 @@ TEST(Layers, LightGroupsOfGuidedPathsAreThePicturesOfTheirLights) {
         std::get<AreaLight>(alone.scene.lights[1 - g]).scale = 0;
         alone.description.sampler.seed = 1000;
         const RunningMoments expected =
-            render_of_seeds(alone.description, IntegratorKind::path, 512).channel[1];
+            render_of_seeds(alone.description, IntegratorKind::path, 512, seeds).channel[1];
         const double error = std::hypot(guided[g].standard_error(), expected.standard_error());
         EXPECT_NEAR(guided[g].mean(), expected.mean(), 7 * error) << groups[g];
-        EXPECT_LT(error, 0.02 * expected.mean()) << groups[g]; // so that a bias would be seen
+        EXPECT_LT(error, 0.02 * expected.mean()) << groups[g];
+        EXPECT_GT(std::abs(guided[1 - g].mean() - expected.mean()), 7 * error) << groups[g];
     }
 }
 

@@ -22,6 +22,20 @@ TEST(NarrowLobes, GlossyBsdfsHaveNoOthers) {
         EXPECT_FALSE(glossy.at(name)) << name;
 }
 
+// Those that consist of others ask them.
+TEST(NarrowLobes, BsdfsSayWhetherTheyHaveDiffuseLobes) {
+    std::map<std::string, bool> diffuse;
+    for (const BsdfCase& c : all_bsdf_cases())
+        diffuse[c.name] = std::visit([](const auto& b) { return b.has_diffuse(); }, c.make());
+    for (const char* name :
+         {"diffuse", "diffuse_transmission", "diffuse_transmission_tilted", "coated_diffuse_0_1",
+          "layered_diffuse_0_4", "layered_conductor_fog", "subsurface", "disney", "disney_sheet"})
+        EXPECT_TRUE(diffuse.at(name)) << name;
+    for (const char* name : {"conductor_smooth", "conductor_0_5", "dielectric_0_6", "layered_conductor",
+                             "hair", "measured", "dielectric_tilted"})
+        EXPECT_FALSE(diffuse.at(name)) << name;
+}
+
 TEST(NarrowLobes, PrincipledBsdfsByTheirLobes) {
     PrincipledBsdf<true> b{};
     b.layers.interface.ggx = {0.1f, 0.1f};

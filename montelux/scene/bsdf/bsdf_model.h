@@ -24,8 +24,8 @@ concept BsdfModel = std::is_trivially_copyable_v<B> && std::same_as<decltype(B::
     { b.is_specular() } -> std::same_as<bool>;
     // Some lobe is a delta.
     { b.has_specular() } -> std::same_as<bool>;
-    // Some lobe is broad: diffuse light, sheen, scattering below the surface. Guided paths split there (is_glossy in
-    // narrow_lobes.h); no estimate depends on it.
+    // Some lobe is diffuse: Lambert's, sheen, scattering below the surface. Microfacets count by their alpha, hair and
+    // measured BRDFs as narrow (narrow_lobes.h). Guides learn, split and end paths by it; no expected value depends on it.
     { b.has_diffuse() } -> std::same_as<bool>;
     // Directional albedo, possibly approximate: a feature for denoisers, not part of an estimate.
     { b.albedo(w) } -> std::same_as<SampledSpectrum>;

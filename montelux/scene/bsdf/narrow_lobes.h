@@ -14,6 +14,7 @@ template <BsdfModel B>
 float least_alpha(const B& bsdf) {
     float least = 1;
     bsdf.visit_fields([&]<typename F>(const char*, const F& field) {
+        static_assert(BsdfModel<F> || !requires { F::traits; }); // it would be taken for a number
         if constexpr (BsdfModel<F>) {
             least = std::min(least, least_alpha(field));
         } else if constexpr (requires { field.alpha_x; }) {
@@ -31,6 +32,7 @@ bool is_glossy(const B& bsdf) {
     if (bsdf.has_diffuse()) return false;
     bool narrow = true;
     bsdf.visit_fields([&]<typename F>(const char*, const F& field) {
+        static_assert(BsdfModel<F> || !requires { F::traits; }); // it would be taken for a number
         if constexpr (BsdfModel<F>)
             narrow = narrow && is_glossy(field);
         else if constexpr (requires { field.alpha_x; })
