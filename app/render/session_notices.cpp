@@ -77,16 +77,19 @@ void print_statistics(const RenderReport& report, double load_seconds, const Ren
                 100 * report.ray_seconds / report.cpu_seconds);
     std::printf("peak memory        %.1f MiB\n", static_cast<double>(peak_memory()) / (1 << 20));
     if (const GuideSummary& guide = report.guide; guide.bytes > 0)
-        std::printf("guide              %llu regions, %.1f MiB, from %u samples per pixel in %u rounds, %.2f "
-                    "s of CPU; "
-                    "gain %.2g\n",
-                    static_cast<unsigned long long>(guide.regions),
-                    static_cast<double>(guide.bytes) / (1 << 20), guide.samples, guide.rounds,
-                    guide.cpu_seconds, guide.gain);
+        std::printf(
+            "guide              %llu regions, %.1f MiB, from %.3g samples per pixel in %u rounds, %.2f "
+            "s of CPU; "
+            "gain %.2g\n",
+            static_cast<unsigned long long>(guide.regions), static_cast<double>(guide.bytes) / (1 << 20),
+            guide.samples, guide.rounds, guide.cpu_seconds, guide.gain);
+    else if (guide.rounds > 0 && guide.gain == 0)
+        std::printf("guide              none: the render is too short to try one\n");
     else if (guide.rounds > 0)
-        std::printf("guide              none: it would not pay (gain %.2g after %u samples per pixel, %.2f s "
-                    "of CPU)\n",
-                    guide.gain, guide.samples, guide.cpu_seconds);
+        std::printf(
+            "guide              none: it would not pay (gain %.2g after %.3g samples per pixel, %.2f s "
+            "of CPU)\n",
+            guide.gain, guide.samples, guide.cpu_seconds);
     if (renderer.description().integrator.manifold_sampling) print_casters(renderer.scene());
     for (const EnvironmentSampler& map : renderer.scene().light_tables.environments)
         std::printf("environment        %s\n", map.description().c_str());

@@ -21,7 +21,7 @@ namespace {
 
 constexpr std::string_view kind = "render";
 // Version of the layout below.
-constexpr std::uint32_t layout_version = 8;
+constexpr std::uint32_t layout_version = 9;
 static_assert(std::is_trivially_copyable_v<Pixel> && std::endian::native == std::endian::little);
 
 template <typename... T>

@@ -7,8 +7,9 @@ namespace montelux {
 
 // The outcome of a training. Trivially copyable.
 struct GuideSummary {
-    bool decided = false;                  // the training is over
-    std::uint32_t rounds = 0, samples = 0; // samples per pixel of all rounds
+    bool decided = false; // the training is over
+    std::uint32_t rounds = 0;
+    double samples = 0; // per pixel, of all rounds
     // Samples that an unguided render takes in the time of a guided one with the same error, over those of the guided
     // one; estimated from the training.
     double gain = 0;

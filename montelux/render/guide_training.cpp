@@ -4,6 +4,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
 #include <vector>
 
@@ -21,14 +22,18 @@ constexpr std::size_t training_batch = 256;
 // Sample indices that no render takes.
 constexpr std::uint64_t first_training_index = std::uint64_t{1} << 40;
 // The first round has at most as many paths, or one for each pixel.
-constexpr std::uint64_t first_paths = 1u << 16;
-// Shares of the render's samples.
-constexpr double all_training = 1.0 / 6, trial = 1.0 / 30;
+constexpr double first_paths = 1 << 16;
+// A trial begins with as many at least, or with so many where a time or an error decides how long the render is.
+constexpr double fewest_paths = 1 << 12, fewest_paths_to_time = 1 << 14;
+// Shares of the render's samples. Samples of a trial, guided and recorded, take up to three times as long as unguided
+// ones: a trial costs a twentieth of the time at most.
+constexpr double all_training = 1.0 / 6, trial = 1.0 / 60, open_trial = 1.0 / 32;
 // Guided paths are shaded one by one and look up densities: a ray of theirs takes so many times as long.
 constexpr double cost_of_guiding = 1.6;
-// Gain of a guide that is kept. What splitting and the roulette of light samples gain comes on top. The first guide has
-// learned without one: the next, which is judged again, will be better.
-constexpr double least_gain = 1.1, least_gain_of_first = 0.85, least_gain_of_kept = 1;
+// Gain of a guide that passes the trial, of one whose trial goes on, since the next will have learned from twice as many
+// samples, and of one that is kept after it, when most of its cost is spent. What splitting and the roulette of light
+// samples gain comes on top.
+constexpr double least_gain = 1.1, least_gain_of_open = 0.85, least_gain_of_kept = 1;
 // Guesses before the first round, of its records per sample.
 constexpr double first_records_per_sample = 6;
 // No path counts as more than the root of this many times what its pixel expects: the rarest ones would decide alone.
@@ -39,9 +44,13 @@ struct TrainingRound {
     std::vector<std::vector<GuidingRecord>> records; // of each tile
     std::vector<double> sums, squares;               // of the radiance
     std::vector<double> unguided_squares;            // as they would be without the guide
-    std::uint32_t samples = 0;                       // per pixel
+    std::vector<std::uint32_t> samples;              // of each pixel
     std::uint64_t rays = 0;
     double cpu_seconds = 0;
+
+    std::uint64_t sample_count() const {
+        return std::accumulate(samples.begin(), samples.end(), std::uint64_t{0});
+    }
 
     std::size_t record_count() const {
         std::size_t count = 0;
@@ -50,16 +59,25 @@ struct TrainingRound {
     }
 };
 
-// `share` of the paths are kept as records, `most` records of each tile; of a pixel probably `expected_records`.
+// Whether a round of so many samples per pixel takes one of this pixel. Where it is less than one the pixels are spread
+// evenly (Roberts 2018, "The Unreasonable Effectiveness of Quasirandom Sequences": R2), and rounds of more contain them.
+bool is_taken(int x, int y, double samples) {
+    const double place = 0.7548776662466927 * x + 0.5698402909980532 * y;
+    return place - std::floor(place) < samples;
+}
+
+// Samples with indices from `first` on. `share` of the paths are kept as records, `most` records of each tile; of a pixel
+// probably `expected_records`.
 TrainingRound take_round(const SampleContext& context, const Accelerator& accelerator,
-                         const GuideTrainingPlan& plan, std::uint64_t first, std::uint32_t samples,
-                         double share, double expected_records, std::size_t most) {
+                         const GuideTrainingPlan& plan, std::uint64_t first, double samples, double share,
+                         double expected_records, std::size_t most) {
+    const auto of_pixel = static_cast<std::uint32_t>(std::max(samples, 1.0));
     const std::vector<PixelBounds> tiles = tiles_of(plan.bounds, training_tile);
     const auto width = static_cast<std::size_t>(plan.bounds.width());
     TrainingRound round;
-    round.samples = samples;
     round.records.resize(tiles.size());
     round.sums.resize(pixel_count(plan.bounds));
+    round.samples.resize(round.sums.size());
     round.squares.resize(round.sums.size());
     round.unguided_squares.resize(round.sums.size());
     struct Cost {
@@ -102,13 +120,17 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
                 places.clear();
             };
             for (int y = tile.y0; y < tile.y1; ++y)
-                for (int x = tile.x0; x < tile.x1; ++x)
-                    for (std::uint32_t s = 0; s < samples; ++s) {
+                for (int x = tile.x0; x < tile.x1; ++x) {
+                    if (!is_taken(x, y, samples)) continue;
+                    const std::size_t place = static_cast<std::size_t>(y - plan.bounds.y0) * width +
+                                              static_cast<std::size_t>(x - plan.bounds.x0);
+                    round.samples[place] = of_pixel;
+                    for (std::uint32_t s = 0; s < of_pixel; ++s) {
                         keys.push_back({x, y, first_training_index + first + s});
-                        places.push_back(static_cast<std::size_t>(y - plan.bounds.y0) * width +
-                                         static_cast<std::size_t>(x - plan.bounds.x0));
+                        places.push_back(place);
                         if (keys.size() == training_batch) take();
                     }
+                }
             if (!keys.empty()) take();
             costs[index] = {tracer.statistics.rays(), thread_cpu_seconds() - begin};
         },
@@ -123,12 +145,17 @@ TrainingRound take_round(const SampleContext& context, const Accelerator& accele
 // What each pixel expects: means around it, none below a share of the picture's. No pixel counts for much more than the
 // picture's mean, unless most of those around it do.
 std::vector<float> expected_radiance(const TrainingRound& round, const PixelBounds& bounds) {
-    constexpr int radius = 3;
-    constexpr double most_of_mean = 20, least_of_mean = 0.02;
+    constexpr double most_of_mean = 20, least_of_mean = 0.02, taken_around = 16;
     const int width = bounds.width(), height = bounds.height();
-    double mean = 0;
-    for (const double s : round.sums) mean += s / round.samples;
-    mean /= static_cast<double>(round.sums.size());
+    double mean = 0, taken = 0;
+    for (std::size_t i = 0; i < round.sums.size(); ++i)
+        if (round.samples[i] > 0) {
+            mean += round.sums[i] / round.samples[i];
+            ++taken;
+        }
+    mean /= std::max(taken, 1.0);
+    const double share = std::max(taken, 1.0) / static_cast<double>(round.sums.size());
+    const int radius = std::max(3, static_cast<int>(std::ceil(std::sqrt(taken_around / share) / 2)));
     std::vector<float> expected(round.sums.size());
     parallel_for(height, [&](std::int64_t row) {
         const int y = static_cast<int>(row);
@@ -136,51 +163,82 @@ std::vector<float> expected_radiance(const TrainingRound& round, const PixelBoun
         for (int x = 0; x < width; ++x) {
             around.clear();
             for (int v = std::max(0, y - radius); v < std::min(height, y + radius + 1); ++v)
-                for (int u = std::max(0, x - radius); u < std::min(width, x + radius + 1); ++u)
-                    around.push_back(
-                        round.sums[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
-                                   static_cast<std::size_t>(u)] /
-                        round.samples);
-            const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
-            std::nth_element(around.begin(), middle, around.end());
-            const double most = most_of_mean * std::max(mean, *middle);
-            double sum = 0;
-            for (const double v : around) sum += std::min(v, most);
+                for (int u = std::max(0, x - radius); u < std::min(width, x + radius + 1); ++u) {
+                    const std::size_t i = static_cast<std::size_t>(v) * static_cast<std::size_t>(width) +
+                                          static_cast<std::size_t>(u);
+                    if (round.samples[i] > 0) around.push_back(round.sums[i] / round.samples[i]);
+                }
+            double e = mean;
+            if (!around.empty()) {
+                const auto middle = around.begin() + static_cast<std::ptrdiff_t>(around.size() / 2);
+                std::nth_element(around.begin(), middle, around.end());
+                const double most = most_of_mean * std::max(mean, *middle);
+                double sum = 0;
+                for (const double v : around) sum += std::min(v, most);
+                e = sum / double(around.size());
+            }
             expected[static_cast<std::size_t>(y) * static_cast<std::size_t>(width) +
-                     static_cast<std::size_t>(x)] =
-                static_cast<float>(std::max(sum / double(around.size()), least_of_mean * mean));
+                     static_cast<std::size_t>(x)] = static_cast<float>(std::max(e, least_of_mean * mean));
         }
     });
     return expected;
 }
 
 // Mean over the pixels of the second moment of a sample, over the square of what the pixel expects.
-double relative_second_moment(const std::vector<double>& squares, std::uint32_t samples,
+double relative_second_moment(const TrainingRound& round, const std::vector<double>& squares,
                               const std::vector<float>& expected) {
-    double sum = 0;
+    double sum = 0, taken = 0;
     for (std::size_t i = 0; i < expected.size(); ++i) {
+        if (round.samples[i] == 0) continue;
+        ++taken;
         const double e = double(expected[i]);
-        if (e > 0) sum += std::min(squares[i] / samples / (e * e), most_relative_square);
+        if (e > 0) sum += std::min(squares[i] / round.samples[i] / (e * e), most_relative_square);
     }
-    return sum / static_cast<double>(expected.size());
+    return taken > 0 ? sum / taken : 0;
 }
 
 // Samples per pixel that the render will take without a guide.
 double samples_of_render(const GuideTrainingPlan& plan, const TrainingRound& first, double wall_seconds) {
     double samples = static_cast<double>(plan.samples);
-    if (plan.seconds > 0) samples = std::min(samples, plan.seconds / wall_seconds * first.samples);
+    const double of_first =
+        static_cast<double>(first.sample_count()) / static_cast<double>(first.sums.size());
+    if (plan.seconds > 0) samples = std::min(samples, plan.seconds / wall_seconds * of_first);
     if (plan.error > 0) {
-        double mean = 0, variance = 0;
+        double mean = 0, variance = 0, taken = 0;
         for (std::size_t i = 0; i < first.sums.size(); ++i) {
-            const double m = first.sums[i] / first.samples;
+            if (first.samples[i] == 0) continue;
+            const double m = first.sums[i] / first.samples[i];
             mean += m;
-            variance += first.squares[i] / first.samples - (first.samples > 1 ? m * m : 0);
+            variance += first.squares[i] / first.samples[i] - (first.samples[i] > 1 ? m * m : 0);
+            ++taken;
         }
-        mean /= static_cast<double>(first.sums.size());
-        variance /= static_cast<double>(first.sums.size());
-        if (mean > 0) samples = std::min(samples, variance / std::pow(plan.error * mean, 2));
+        if (mean > 0) samples = std::min(samples, variance / taken / std::pow(plan.error * mean / taken, 2));
     }
     return samples;
+}
+
+// Samples per pixel of the first of rounds that each take twice as many. Of small pictures several; not so many that
+// three rounds take more than their share.
+double first_samples(const GuideTrainingPlan& plan, bool automatic) {
+    const auto pixels = double(pixel_count(plan.bounds));
+    const double most = std::max(1.0, std::floor(first_paths / pixels));
+    if (!automatic) return std::clamp(std::floor(all_training / 7 * double(plan.samples)), 1.0, most);
+    // Where fewer pixels are taken, none would be taken around others.
+    constexpr double least_share = 1.0 / 8;
+    // What a time or an error allows is not known yet.
+    const bool unknown = plan.seconds > 0 || plan.error > 0;
+    const double least =
+        std::clamp((unknown ? fewest_paths_to_time : fewest_paths) / pixels, least_share, 1.0);
+    if (unknown) return least;
+    const double samples = std::clamp(trial / 7 * double(plan.samples), least, most);
+    return samples > 1 ? std::floor(samples) : samples;
+}
+
+double twice(double samples) { return 2 * samples > 1 ? std::floor(2 * samples) : 2 * samples; }
+
+// Of the samples that the render takes, those that train a guide: one that gains little is not worth many.
+double share_of_training(double gain, bool automatic) {
+    return automatic ? std::min(all_training, (gain - 1) / 8) : all_training;
 }
 
 } // namespace
@@ -198,65 +256,69 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
     const std::size_t most_records = memory / 8 * 7 / (sizeof(GuidingRecord) + sizeof(void*));
     const std::size_t tiles = tiles_of(plan.bounds, training_tile).size();
     const GuidingLearnerSettings learner{.most_bytes = memory / 8};
-    const std::uint64_t pixels = pixel_count(plan.bounds);
-    // Of small pictures several for each pixel; not so many that three rounds take more than their share. What a time or an
-    // error allows is not known yet.
-    const bool unknown = automatic && (plan.seconds > 0 || plan.error > 0);
-    const double most =
-        unknown ? 1 : (automatic ? trial : all_training) / 7 * static_cast<double>(plan.samples);
-    auto samples = static_cast<std::uint32_t>(
-        std::clamp(most, 1.0, std::max(1.0, static_cast<double>(first_paths) / static_cast<double>(pixels))));
+    const auto pixels = double(pixel_count(plan.bounds));
+    double samples = first_samples(plan, automatic);
+    if (automatic && plan.error == 0 &&
+        samples + twice(samples) > trial * double(plan.samples)) { // too short to try
+        summary.decided = true;
+        return trained;
+    }
+    std::uint64_t next_index = 0;
     double records_per_sample = first_records_per_sample, budget = std::numeric_limits<double>::infinity();
     double unguided_cost = 0; // rays of a sample
-    bool kept = false;        // after the trial
+    bool passed = false;      // the trial
     for (;;) {
-        const double wanted = records_per_sample * double(pixels) * samples;
+        const double wanted = records_per_sample * pixels * samples;
         const double share = std::min(1.0, 0.9 * static_cast<double>(most_records) / wanted);
         const auto begin = Clock::now();
-        TrainingRound round = take_round(context, accelerator, plan, summary.samples, samples, share,
+        TrainingRound round = take_round(context, accelerator, plan, next_index, samples, share,
                                          share * records_per_sample * samples, most_records / tiles);
+        const double wall_seconds = std::chrono::duration<double>(Clock::now() - begin).count();
         summary.cpu_seconds += round.cpu_seconds;
         if (plan.cancel != nullptr && plan.cancel->requested()) {
             context.set_guide(nullptr);
             return {nullptr, {}};
         }
-        summary.samples += samples;
+        const auto taken = static_cast<double>(round.sample_count());
+        next_index += static_cast<std::uint64_t>(std::ceil(samples));
+        summary.samples += taken / pixels;
         ++summary.rounds;
         std::vector<float> expected = expected_radiance(round, plan.bounds);
-        const double cost = static_cast<double>(round.rays) / (double(pixels) * samples);
-        const double moment = relative_second_moment(round.squares, samples, expected);
+        const double cost = static_cast<double>(round.rays) / std::max(taken, 1.0);
+        const double moment = relative_second_moment(round, round.squares, expected);
         if (!context.guide()) {
             unguided_cost = cost;
-            budget =
-                samples_of_render(plan, round, std::chrono::duration<double>(Clock::now() - begin).count());
+            budget = samples_of_render(plan, round, wall_seconds);
         } else if (moment > 0) {
             // Estimated from guided samples: so few unguided ones would miss rare light, which dominates the variance.
-            summary.gain = relative_second_moment(round.unguided_squares, samples, expected) * unguided_cost /
+            summary.gain = relative_second_moment(round, round.unguided_squares, expected) * unguided_cost /
                            (moment * cost * cost_of_guiding);
         }
         // Where light is hidden, unguided samples underestimate how many samples an error target needs.
         const bool next_is_trial =
-            (summary.rounds == 1 && plan.error > 0) || summary.samples + 2.0 * samples <= trial * budget;
-        const double least = summary.rounds == 2 ? least_gain_of_first
-                             : kept              ? least_gain_of_kept
-                                                 : least_gain;
-        const bool gives_up = automatic && !next_is_trial && !(summary.gain >= least);
-        kept = !next_is_trial && summary.rounds >= 3;
+            (summary.rounds == 1 && plan.error > 0) ||
+            summary.samples + twice(samples) <=
+                (summary.gain >= least_gain_of_open && !passed ? open_trial : trial) * budget;
+        const bool gives_up =
+            automatic && !next_is_trial && !(summary.gain >= (passed ? least_gain_of_kept : least_gain));
+        passed = !next_is_trial;
         const bool nothing_found = round.record_count() == 0 || (!context.guide() && !(moment > 0));
         if (gives_up || nothing_found) {
             context.set_guide(nullptr);
             break;
         }
-        records_per_sample = static_cast<double>(round.record_count()) / (share * double(pixels) * samples);
+        records_per_sample = static_cast<double>(round.record_count()) / (share * std::max(taken, 1.0));
         const double learning = process_cpu_seconds(); // all threads learn
         context.set_guide(std::make_shared<const GuidingField>(
             GuidingLearner::learn(round.records, learner, plan.bounds, std::move(expected))));
         summary.cpu_seconds += process_cpu_seconds() - learning;
-        samples *= 2;
+        samples = twice(samples);
         // Twice at least: what the first guide learned without another one is noisy.
         const bool memory_is_full = share < 0.5;
-        if (summary.rounds >= 3 &&
-            (memory_is_full || summary.samples + double(samples) > all_training * budget))
+        const bool tries = automatic && next_is_trial;
+        if (summary.rounds >= 3 && !tries &&
+            (memory_is_full ||
+             summary.samples + samples > share_of_training(summary.gain, automatic) * budget))
             break;
     }
     trained.guide = context.guide();

@@ -83,7 +83,7 @@ void add_render_header(Image& image, const std::string& scene_name, const Render
     if (description.integrator.guiding != Guiding::off) {
         a["guiding"] = std::string(name_of(description.integrator.guiding));
         a["guided"] = report.guide.bytes > 0 ? 1 : 0;
-        a["guideTrainingSamples"] = static_cast<int>(report.guide.samples);
+        a["guideTrainingSamples"] = report.guide.samples;
     }
     if (description.integrator.manifold_sampling) a["manifoldSampling"] = 1;
     a["equiangular"] = description.integrator.equiangular ? 1 : 0;
