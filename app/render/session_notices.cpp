@@ -83,9 +83,11 @@ void print_statistics(const RenderReport& report, double load_seconds, const Ren
             "gain %.2g\n",
             static_cast<unsigned long long>(guide.regions), static_cast<double>(guide.bytes) / (1 << 20),
             guide.samples, guide.rounds, guide.cpu_seconds, guide.gain);
-    else if (guide.rounds > 0 && guide.gain == 0)
+    else if (guide.outcome == GuideOutcome::too_short)
         std::printf("guide              none: the render is too short to try one\n");
-    else if (guide.rounds > 0)
+    else if (guide.outcome == GuideOutcome::nothing_found)
+        std::printf("guide              none: no light was found to learn from\n");
+    else if (guide.outcome == GuideOutcome::would_not_pay)
         std::printf(
             "guide              none: it would not pay (gain %.2g after %.3g samples per pixel, %.2f s "
             "of CPU)\n",

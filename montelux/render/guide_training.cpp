@@ -23,10 +23,11 @@ constexpr std::size_t training_batch = 256;
 constexpr std::uint64_t first_training_index = std::uint64_t{1} << 40;
 // The first round has at most as many paths, or one for each pixel.
 constexpr double first_paths = 1 << 16;
-// A trial begins with as many at least, or with so many where a time or an error decides how long the render is.
+// A trial begins with as many at least, or with so many where a time or an error decides how long the render is, or with
+// one for each pixel.
 constexpr double fewest_paths = 1 << 12, fewest_paths_to_time = 1 << 14;
-// Shares of the render's samples. Samples of a trial, guided and recorded, take up to three times as long as unguided
-// ones: a trial costs a twentieth of the time at most.
+// Shares of the render's samples. Those of a trial, guided and recorded, take one and a half to three times as long as
+// unguided ones: a trial takes a twentieth of the time at most, and one that stays open twice as much.
 constexpr double all_training = 1.0 / 6, trial = 1.0 / 60, open_trial = 1.0 / 32;
 // Guided paths are shaded one by one and look up densities: a ray of theirs takes so many times as long.
 constexpr double cost_of_guiding = 1.6;
@@ -212,29 +213,29 @@ double samples_of_render(const GuideTrainingPlan& plan, const TrainingRound& fir
             variance += first.squares[i] / first.samples[i] - (first.samples[i] > 1 ? m * m : 0);
             ++taken;
         }
-        if (mean > 0) samples = std::min(samples, variance / taken / std::pow(plan.error * mean / taken, 2));
+        mean /= taken;
+        variance /= taken;
+        if (mean > 0) samples = std::min(samples, variance / std::pow(plan.error * mean, 2));
     }
     return samples;
 }
 
-// Samples per pixel of the first of rounds that each take twice as many. Of small pictures several; not so many that
-// three rounds take more than their share.
+// Samples per pixel of the first of rounds that each take twice as many: whole ones or, in a trial, 1/2, 1/4 or 1/8. Of
+// small pictures several; not so many that three rounds take more than their share.
 double first_samples(const GuideTrainingPlan& plan, bool automatic) {
     const auto pixels = double(pixel_count(plan.bounds));
     const double most = std::max(1.0, std::floor(first_paths / pixels));
     if (!automatic) return std::clamp(std::floor(all_training / 7 * double(plan.samples)), 1.0, most);
-    // Where fewer pixels are taken, none would be taken around others.
+    // What pixels expect is learned from those around them, which must not be far away.
     constexpr double least_share = 1.0 / 8;
     // What a time or an error allows is not known yet.
     const bool unknown = plan.seconds > 0 || plan.error > 0;
-    const double least =
-        std::clamp((unknown ? fewest_paths_to_time : fewest_paths) / pixels, least_share, 1.0);
+    const double paths = unknown ? fewest_paths_to_time : fewest_paths;
+    const double least = std::clamp(std::exp2(std::ceil(std::log2(paths / pixels))), least_share, 1.0);
     if (unknown) return least;
     const double samples = std::clamp(trial / 7 * double(plan.samples), least, most);
-    return samples > 1 ? std::floor(samples) : samples;
+    return samples > 1 ? std::floor(samples) : std::exp2(std::floor(std::log2(samples)));
 }
-
-double twice(double samples) { return 2 * samples > 1 ? std::floor(2 * samples) : 2 * samples; }
 
 // Of the samples that the render takes, those that train a guide: one that gains little is not worth many.
 double share_of_training(double gain, bool automatic) {
@@ -258,11 +259,12 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
     const GuidingLearnerSettings learner{.most_bytes = memory / 8};
     const auto pixels = double(pixel_count(plan.bounds));
     double samples = first_samples(plan, automatic);
-    if (automatic && plan.error == 0 &&
-        samples + twice(samples) > trial * double(plan.samples)) { // too short to try
+    if (automatic && 3 * samples > trial * double(plan.samples)) { // two rounds
+        summary.outcome = GuideOutcome::too_short;
         summary.decided = true;
         return trained;
     }
+    double taken = 0; // samples per pixel, of all rounds
     std::uint64_t next_index = 0;
     double records_per_sample = first_records_per_sample, budget = std::numeric_limits<double>::infinity();
     double unguided_cost = 0; // rays of a sample
@@ -279,12 +281,13 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
             context.set_guide(nullptr);
             return {nullptr, {}};
         }
-        const auto taken = static_cast<double>(round.sample_count());
+        const auto paths = std::max(1.0, static_cast<double>(round.sample_count()));
         next_index += static_cast<std::uint64_t>(std::ceil(samples));
-        summary.samples += taken / pixels;
+        taken += samples;
+        summary.samples += paths / pixels;
         ++summary.rounds;
         std::vector<float> expected = expected_radiance(round, plan.bounds);
-        const double cost = static_cast<double>(round.rays) / std::max(taken, 1.0);
+        const double cost = static_cast<double>(round.rays) / paths;
         const double moment = relative_second_moment(round, round.squares, expected);
         if (!context.guide()) {
             unguided_cost = cost;
@@ -294,32 +297,36 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
             summary.gain = relative_second_moment(round, round.unguided_squares, expected) * unguided_cost /
                            (moment * cost * cost_of_guiding);
         }
+        const bool memory_is_full = share < 0.5;
+        const bool open = !passed && summary.gain >= least_gain_of_open && summary.gain < least_gain;
         // Where light is hidden, unguided samples underestimate how many samples an error target needs.
-        const bool next_is_trial =
-            (summary.rounds == 1 && plan.error > 0) ||
-            summary.samples + twice(samples) <=
-                (summary.gain >= least_gain_of_open && !passed ? open_trial : trial) * budget;
+        const bool next_is_trial = (summary.rounds == 1 && plan.error > 0) ||
+                                   (!(summary.rounds >= 3 && memory_is_full) &&
+                                    taken + 2 * samples <= (open ? open_trial : trial) * budget);
         const bool gives_up =
             automatic && !next_is_trial && !(summary.gain >= (passed ? least_gain_of_kept : least_gain));
         passed = !next_is_trial;
         const bool nothing_found = round.record_count() == 0 || (!context.guide() && !(moment > 0));
         if (gives_up || nothing_found) {
+            summary.outcome = nothing_found        ? GuideOutcome::nothing_found
+                              : summary.rounds < 2 ? GuideOutcome::too_short
+                                                   : GuideOutcome::would_not_pay;
             context.set_guide(nullptr);
             break;
         }
-        records_per_sample = static_cast<double>(round.record_count()) / (share * std::max(taken, 1.0));
+        records_per_sample = static_cast<double>(round.record_count()) / (share * pixels * samples);
         const double learning = process_cpu_seconds(); // all threads learn
         context.set_guide(std::make_shared<const GuidingField>(
             GuidingLearner::learn(round.records, learner, plan.bounds, std::move(expected))));
         summary.cpu_seconds += process_cpu_seconds() - learning;
-        samples = twice(samples);
+        samples *= 2;
         // Twice at least: what the first guide learned without another one is noisy.
-        const bool memory_is_full = share < 0.5;
         const bool tries = automatic && next_is_trial;
         if (summary.rounds >= 3 && !tries &&
-            (memory_is_full ||
-             summary.samples + samples > share_of_training(summary.gain, automatic) * budget))
+            (memory_is_full || taken + samples > share_of_training(summary.gain, automatic) * budget)) {
+            summary.outcome = GuideOutcome::trained;
             break;
+        }
     }
     trained.guide = context.guide();
     if (trained.guide) {

@@ -197,45 +197,23 @@ TEST(Guiding, RendersCancelledBeforeTheTrainingEndWithTheSameBits) {
 }
 
 // An evenly lit floor leaves nothing to learn: the picture is that of a render that never tried.
-// An infinite plane under a sky: nothing to guide.
-SceneBuilder open_plane(int size, std::uint64_t spp) {
+TEST(Guiding, AutomaticGivesUpWhereItCannotWin) {
     SceneBuilder b;
     b.add_mesh(square(Transform::scale({100, 100, 1})), b.add(DiffuseMaterial{gray(0.6f)}));
     b.add_uniform_light(1);
     b.look({0, -0.5, 5}, {0, 0, 0}, 20);
-    b.description.film.width = b.description.film.height = size;
-    b.description.film.crop = {0, 0, size, size};
-    b.description.sampler.spp = spp;
-    return b;
-}
-
-TEST(Guiding, AutomaticGivesUpWhereItCannotWin) {
-    SceneBuilder b = open_plane(64, 192);
+    b.description.film.width = b.description.film.height = 64;
+    b.description.film.crop = {0, 0, 64, 64};
+    b.description.sampler.spp = 192;
     const RenderState plain = render_guided(b.description);
     b.description.integrator.guiding = Guiding::automatic;
     const RenderState tried = render_guided(b.description);
     EXPECT_TRUE(tried.report.guide.decided);
     EXPECT_GE(tried.report.guide.rounds, 2u); // a guide was judged
     EXPECT_GT(tried.report.guide.gain, 0);
-    EXPECT_LE(tried.report.guide.samples, 192.0 / 60);
     EXPECT_EQ(tried.guide, nullptr);
     for (std::size_t i = 0; i < plain.film.pixels().size(); ++i)
         ASSERT_TRUE(same_pixel(plain.film.pixels()[i], tried.film.pixels()[i]));
-}
-
-TEST(Guiding, AutomaticTriesSomePixelsOfLargePictures) {
-    const auto guide_of = [](std::uint64_t spp) {
-        SceneBuilder b = open_plane(192, spp);
-        b.description.integrator.guiding = Guiding::automatic;
-        return render_guided(b.description).report.guide;
-    };
-    const GuideSummary tried = guide_of(32);
-    EXPECT_EQ(tried.rounds, 2u);
-    EXPECT_NEAR(tried.samples, 3.0 / 8, 0.01);
-    EXPECT_GT(tried.gain, 0);
-    const GuideSummary short_one = guide_of(20); // three eighths of a sample are more than a sixtieth
-    EXPECT_TRUE(short_one.decided);
-    EXPECT_EQ(short_one.rounds, 0u);
 }
 
 TEST(Guiding, AutomaticStaysWhereItWins) {
