@@ -35,6 +35,8 @@ constexpr double cost_of_guiding = 1.6;
 // samples, and of one that is kept after it, when most of its cost is spent. What splitting and the roulette of light
 // samples gain comes on top.
 constexpr double least_gain = 1.1, least_gain_of_open = 0.85, least_gain_of_kept = 1;
+// A guide that gains so many times as much as the one before may still gain much more.
+constexpr double growing = 1.1;
 // Guesses before the first round, of its records per sample.
 constexpr double first_records_per_sample = 6;
 // No path counts as more than the root of this many times what its pixel expects: the rarest ones would decide alone.
@@ -237,9 +239,10 @@ double first_samples(const GuideTrainingPlan& plan, bool automatic) {
     return samples > 1 ? std::floor(samples) : std::exp2(std::floor(std::log2(samples)));
 }
 
-// Of the samples that the render takes, those that train a guide: one that gains little is not worth many.
-double share_of_training(double gain, bool automatic) {
-    return automatic ? std::min(all_training, (gain - 1) / 8) : all_training;
+// Of the samples that the render takes, those that train a guide which passed its trial. One that gains little is not
+// worth many, unless it gains more from round to round.
+double share_of_training(double gain, double last_gain) {
+    return gain > growing * last_gain ? all_training : std::clamp((gain - 1) / 8, open_trial, all_training);
 }
 
 } // namespace
@@ -289,6 +292,7 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
         std::vector<float> expected = expected_radiance(round, plan.bounds);
         const double cost = static_cast<double>(round.rays) / paths;
         const double moment = relative_second_moment(round, round.squares, expected);
+        const double last_gain = summary.gain;
         if (!context.guide()) {
             unguided_cost = cost;
             budget = samples_of_render(plan, round, wall_seconds);
@@ -323,7 +327,9 @@ TrainedGuide train_guide(SampleContext& context, const Accelerator& accelerator,
         // Twice at least: what the first guide learned without another one is noisy.
         const bool tries = automatic && next_is_trial;
         if (summary.rounds >= 3 && !tries &&
-            (memory_is_full || taken + samples > share_of_training(summary.gain, automatic) * budget)) {
+            (memory_is_full ||
+             taken + samples >
+                 (automatic ? share_of_training(summary.gain, last_gain) : all_training) * budget)) {
             summary.outcome = GuideOutcome::trained;
             break;
         }

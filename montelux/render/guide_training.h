@@ -29,7 +29,8 @@ struct TrainedGuide {
 // Rounds of samples, each twice as many as the round before, and each guided by what the paths of the round before have
 // found, up to a sixth of the samples that the render may take. With Guiding::automatic the first rounds are smaller, of some of
 // the pixels, and the training ends after one in sixty samples at most, without a guide, if that does not pay by then; if it
-// is not clear, after one in 32. A guide that gains little is trained less.
+// is not clear, after one in 32. A guide that gains little is trained less, unless its gain
+// grows.
 //
 // Leaves the context with the guide. The result depends on scene, settings, plan and seed, not on the number of
 // threads; with a time limit also on how fast the machine is. Not decided if it was cancelled.

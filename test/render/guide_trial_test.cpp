@@ -2,6 +2,7 @@
 #include "test/render/hidden_lamp.h"
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "montelux/render/guide_training.h"
 
@@ -65,11 +66,37 @@ TEST(GuideTrial, ShortRendersAreNotTried) {
               GuideOutcome::too_short);
 }
 
-// The error allows about as many samples as the plan of the first test.
 TEST(GuideTrial, TargetsDecideHowLongItIs) {
-    const GuideSummary tried = trial(open_plane(64), {.bounds = {}, .samples = 1u << 20, .error = 0.02});
-    EXPECT_EQ(tried.outcome, GuideOutcome::would_not_pay);
-    EXPECT_LE(tried.samples, 31);
+    double last = 0;
+    for (const double error : {0.02, 0.01, 0.005}) { // four times the samples, two rounds more
+        const GuideSummary tried = trial(open_plane(64), {.bounds = {}, .samples = 1u << 20, .error = error});
+        EXPECT_EQ(tried.outcome, GuideOutcome::would_not_pay);
+        EXPECT_GT(tried.samples, last);
+        last = tried.samples;
+    }
+    EXPECT_LT(last, 1000);
+}
+
+// The picture is that of a render that never tried.
+TEST(GuideTrial, LeavesNoTrace) {
+    SceneBuilder b = open_plane(64);
+    b.description.sampler.spp = 192;
+    const RenderState plain = render_guided(b.description);
+    b.description.integrator.guiding = Guiding::automatic;
+    const RenderState tried = render_guided(b.description);
+    EXPECT_EQ(tried.report.guide.outcome, GuideOutcome::would_not_pay);
+    EXPECT_EQ(tried.report.guide.rounds, 2u);
+    EXPECT_EQ(tried.guide, nullptr);
+    for (std::size_t i = 0; i < plain.film.pixels().size(); ++i)
+        ASSERT_TRUE(same_pixel(plain.film.pixels()[i], tried.film.pixels()[i]));
+}
+
+// Its gain is small after the trial, and large after a sixth of the samples.
+TEST(GuideTrial, GuidesThatGrowAreTrainedFurther) {
+    const GuideSummary kept = trial(hidden_lamp(96), {.bounds = {}, .samples = 256});
+    EXPECT_EQ(kept.outcome, GuideOutcome::trained);
+    EXPECT_GT(kept.samples, 256.0 / 12);
+    EXPECT_GT(kept.gain, 2);
 }
 
 TEST(GuideTrial, EndsWhenTheMemoryIsFull) {
