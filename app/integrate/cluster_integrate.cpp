@@ -51,7 +51,8 @@ SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
 
 void SharedIntegration::integrate(const IntegrationTask& task, const BatchFunction& f, const Work& work) {
     const int components = task.integrand.count();
-    if (!shared_) return work(Integrand::batch(f, components), task.options);
+    if (!shared_)
+        return work(Integrand::batch(f, components).with_landmarks(task.integrand.numbers), task.options);
 
     IntegrationOptions options = task.options;
     options.threads = shared_->threads();

@@ -1,5 +1,6 @@
 #include "app/integrate/compiled_function.h"
 
+#include "app/integrate/function_form.h"
 #include "app/interrupt.h"
 #include <algorithm>
 #include <array>
@@ -84,7 +85,10 @@ CompiledFunction CompiledFunction::from_source(const std::string& place, Form fo
     const BuildFolder folder;
     const fs::path library = folder.path() / "integrand.so";
     compile(at.file, library);
-    return {library.string(), at.function, std::move(form), at.file};
+    const FunctionForm declared{.components = form.components > 0, .parameters = !form.parameters.empty()};
+    CompiledFunction function{library.string(), at.function, std::move(form), at.file};
+    check_form(at.file, at.function, declared, folder.path());
+    return function;
 }
 
 CompiledFunction::CompiledFunction(const std::string& file, std::string function, Form form,

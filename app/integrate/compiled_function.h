@@ -24,10 +24,10 @@ class CompiledFunction {
     };
 
     // `place`: FILE:FUNCTION, or FILE alone, whose function is `integrand`. Throw Error naming `place` where there is
-    // no such file or function.
+    // no such file or function. A library does not tell how its function is declared: the form is not checked.
     static CompiledFunction from_library(const std::string& place, Form form);
     // A file in C or C++. $CC or cc, and $CXX or c++, translate it, with -O2 and the words of $CFLAGS or $CXXFLAGS.
-    // What the compiler prints goes to standard error.
+    // What the compiler prints goes to standard error. Throws UsageError for a function of another form.
     static CompiledFunction from_source(const std::string& place, Form form);
 
     // The text of a file, for a device: CUDA C++ (.cu), C or C++.

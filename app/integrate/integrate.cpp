@@ -72,18 +72,10 @@ void show_progress(ProgressLine& line, const IntegrationTask& task, const Integr
     line.show("integrating", text);
 }
 
-bool target_met(const IntegrationTask& task, const IntegrationResult& r) {
-    for (std::size_t c = 0; c < r.value.size(); ++c)
-        if (!(r.standard_error[c] <=
-              std::max(task.budget.absolute_error, task.budget.relative_error * std::abs(r.value[c]))))
-            return false;
-    return true;
-}
-
 int exit_code_of(const IntegrationTask& task, const IntegrationResult& r) {
-    if (r.stop == StopReason::cancelled) return exit_interrupted;
-    if (r.stop == StopReason::error_target || !task.targeted()) return exit_done;
-    return target_met(task, r) ? exit_done : exit_stopped;
+    if (r.stop == StopReason::interrupted) return exit_interrupted;
+    if (r.stop == StopReason::diverges) return exit_stopped;
+    return r.converged() || !task.targeted() ? exit_done : exit_stopped;
 }
 
 void save_density(const IntegrateOptions& o, const IntegrationResult& result) {
@@ -126,12 +118,13 @@ int run(const IntegrateOptions& o) {
             logarithm.relative = integrate(f, task.domain, task.method, task.budget, options);
     };
     if (task.integrand.compiled)
-        work(Integrand::compiled(task.integrand.compiled), task.options);
+        work(Integrand::compiled(task.integrand.compiled).with_landmarks(task.integrand.numbers), task.options);
     else
 #ifdef MONTELUX_WITH_RENDER
         shared.integrate(task, evaluate, work);
 #else
-        work(Integrand::batch(evaluate, task.integrand.count()), task.options);
+        work(Integrand::batch(evaluate, task.integrand.count()).with_landmarks(task.integrand.numbers),
+             task.options);
 #endif
     line.finish();
     const IntegrationResult& result = logarithm.relative;
@@ -142,7 +135,7 @@ int run(const IntegrateOptions& o) {
                      result.checkpoint_refused_because.c_str());
     if (!o.plot.empty()) write_convergence_plot(o.plot, task, result);
     if (!o.points.empty()) recorder.write(o.points, task.variables, task.integrand.names);
-    if (result.evaluations == 0)
+    if (result.history.empty())
         std::fprintf(stderr,
                      "montelux: warning: the run ended before its first step; nothing is known yet\n");
     std::string text;

@@ -25,6 +25,7 @@ namespace {
 
 constexpr std::array<std::string_view, 4> domain_names{"box", "simplex", "ball", "sphere"};
 constexpr std::array<std::string_view, 2> policy_names{"skip", "throw"};
+constexpr std::array<std::string_view, 2> norm_names{"component", "vector"};
 
 void check_choice(const std::string& given, std::span<const std::string_view> names,
                   const std::string& option, const std::string& what) {
@@ -156,9 +157,12 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
     for (std::string& text : formulas)
         if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
     Formulas parsed(formulas, variables, "", constants);
-    if (!o.device.empty())
-        return on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
-    return {std::move(parsed), formulas};
+    std::vector<double> numbers = parsed.numbers();
+    NamedIntegrand made =
+        o.device.empty() ? NamedIntegrand{std::move(parsed), formulas}
+                         : on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
+    made.numbers = std::move(numbers);
+    return made;
 }
 
 // 10k, 1.5M and 2G as 10e3, 1.5e6 and 2e9; other texts as they are.
@@ -246,11 +250,18 @@ void declare(CLI::App& c, IntegrateOptions& o) {
          "Stop at this standard error relative to the value, for example 1e-3 or 0.1%", "E");
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
          "E");
+    text("--norm", o.norm,
+         "What the relative error of several formulas refers to: the value of each component, or vector, the norm "
+         "of all. Default: component",
+         "NAME");
     text("--evaluations", o.evaluations,
-         "Maximum number of evaluations, for example 50000, 50k, 1M or 1e6. Default: 1e6 where neither an "
-         "error nor a time is given",
+         "Maximum number of evaluations, for example 50000, 50k, 1M or 1e6. Default: 1e6 without an error or a "
+         "time",
          "N");
-    text("--time", o.time, "Stop after this time, for example 90, 90s, 10m or 1h30m", "TIME");
+    text("--time", o.time,
+         "Stop after this time, for example 90, 90s, 10m or 1h30m. Default with an error and without evaluations: 60 s, "
+         "or 1e9 evaluations",
+         "TIME");
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");
     text("--threads", o.threads, "Threads; 0: one per processor. The result does not depend on it", "N");
     text("--domain", o.domain,
@@ -292,6 +303,7 @@ void declare(CLI::App& c, IntegrateOptions& o) {
 IntegrationTask make_task(const IntegrateOptions& o) {
     check_choice(o.domain, domain_names, "--domain", "domain");
     check_choice(o.non_finite, policy_names, "--non-finite", "policy");
+    check_choice(o.norm, norm_names, "--norm", "norm");
     if (!o.device.empty()) check_choice(o.device, Device::names(), "--device", "device");
     const bool box = o.domain == "box";
     check_sources(o);
@@ -311,6 +323,7 @@ IntegrationTask make_task(const IntegrateOptions& o) {
     budget.absolute_error =
         positive(o.absolute_error, "--absolute-error", "; leave it out to stop at --evaluations or --time");
     budget.time = std::chrono::duration<double>(seconds(o.time));
+    if (o.norm == "vector") budget.norm = ErrorNorm::vector;
     if (!o.evaluations.empty())
         budget.evaluations = whole_number(o.evaluations, "--evaluations", 1, UINT64_MAX);
 

@@ -78,6 +78,7 @@ Json report_json(const IntegrationTask& task, const IntegrationResult& r) {
     out["p_value"] = compared ? number(r.p_value) : Json(nullptr);
     out["converged"] = r.converged();
     out["stop"] = to_string(r.stop);
+    out["notes"] = r.notes;
     out["warnings"] = r.warnings;
     out["non_finite"] = r.non_finite;
     out["first_non_finite_point"] =

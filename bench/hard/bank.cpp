@@ -17,8 +17,9 @@ std::span<const HardFamily> hard_families() {
 }
 
 const HardFamily* hard_family_named(std::string_view name) {
-    for (const HardFamily& family : hard_families())
-        if (family.name == name) return &family;
+    for (const auto& families : {hard_families(), judging_families()})
+        for (const HardFamily& family : families)
+            if (family.name == name) return &family;
     return nullptr;
 }
 

@@ -31,7 +31,10 @@ struct HardFamily {
     HardIntegral (*draw)(Draws& draws);
 };
 
+// The families that constants of integrators are set on.
 std::span<const HardFamily> hard_families();
+// Families that judge: no constant of an integrator may be set on them. Not among hard_families().
+std::span<const HardFamily> judging_families();
 const HardFamily* hard_family_named(std::string_view name);
 
 class HardProblem final : public BenchProblem {

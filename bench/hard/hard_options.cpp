@@ -9,6 +9,7 @@ namespace montelux::bench {
 std::string_view hard_options_help() {
     return "Runs integrators over the bank of hard integrals: silent failures, honest convergence, "
            "coverage.\n"
+           "  --bank NAME       judging, or tuning: the families that constants of integrators are set on  [judging]\n"
            "  --families A,B    families, by name or beginning of a name (ring, mixture, ...)  [all]\n"
            "  --methods A,B     methods by name (auto, adaptive, vegas+, ...)\n"
            "                    [auto, adaptive, cubature, vegas, vegas_sobol, quasi, basic, stratified,\n"
@@ -48,11 +49,16 @@ HardOptions parse_hard_options(const std::vector<std::string_view>& arguments) {
             options.verbose = true;
         else if (option == "--quick") {
             options.quick = options.verbose = true;
+            options.bank = "tuning";
             options.methods = {"auto", "adaptive"};
             options.targets.assign(std::begin(quick_targets), std::end(quick_targets));
             options.cap = quick_cap;
             options.seconds = quick_seconds;
             options.seeds = quick_seeds;
+        } else if (option == "--bank") {
+            options.bank = value();
+            if (options.bank != "judging" && options.bank != "tuning")
+                throw Error(option, "'" + options.bank + "' was given; expected judging or tuning");
         } else if (option == "--families")
             options.families = comma_separated(value());
         else if (option == "--methods")

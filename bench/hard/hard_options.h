@@ -12,6 +12,7 @@ struct HardOptions {
     std::vector<std::string> families; // names, or beginnings of names; empty: all
     std::vector<std::string> methods;  // names; empty: those of the comparison
     std::vector<double> targets{1e-2, 1e-3, 1e-4};
+    std::string bank = "judging"; // or "tuning": the families that constants are set on
     double cap = 3e6;
     double seconds = 60;
     std::uint64_t seeds = 40, first_seed = 0;

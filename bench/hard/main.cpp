@@ -47,9 +47,13 @@ std::vector<Method> methods_of(const HardOptions& options) {
     return chosen;
 }
 
+std::span<const HardFamily> bank_of(const HardOptions& options) {
+    return options.bank == "judging" ? judging_families() : hard_families();
+}
+
 HardPlan plan_of(const HardOptions& options) {
     HardPlan plan;
-    for (const HardFamily& family : hard_families())
+    for (const HardFamily& family : bank_of(options))
         if (options.families.empty() || begins_with_one_of(options.families, family.name))
             plan.families.push_back(&family);
     if (plan.families.empty())
@@ -66,7 +70,7 @@ HardPlan plan_of(const HardOptions& options) {
 }
 
 void list(const HardOptions& options) {
-    for (const HardFamily& family : hard_families())
+    for (const HardFamily& family : bank_of(options))
         std::cout << family.name << ": " << family.formula << "\n";
     HardOptions every = options;
     every.methods.clear();

@@ -4,23 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from . import _core
 from ._c_functions import Integrand, c_function
-from ._core import Domain, Error
+from ._core import Error
 from ._devices import device_function, is_text
 from ._names import unknown
+from ._regions import Region, with_points_of
 from ._result import Array
 from ._workers import WorkerPool, worker_count
 
 #: Makes another library's array of NumPy's: torch.from_dlpack, jax.numpy.asarray.
 ArrayMaker = Callable[[Array], Any]
-
+_Answer = TypeVar("_Answer")
 
 #: What `device` may be.
 DEVICES = ("cuda", "emulated")
@@ -33,12 +34,17 @@ class PreparedIntegrand:
     function: Any
     components: int
     threads: int
+    pool: WorkerPool | None = None
+
+    def run(self, work: Callable[[], _Answer], cancel: _core.CancelFlag) -> _Answer:
+        """What work() returns, which calls the function, until `cancel` is requested; Ctrl-C requests it."""
+        return work() if self.pool is None else self.pool.run(work, cancel)
 
 
 @contextmanager
 def prepared(
     f: Integrand,
-    region: Domain,
+    region: Region,
     batch: bool = True,
     out: bool = False,
     array: ArrayMaker | None = None,
@@ -49,9 +55,9 @@ def prepared(
 ) -> Iterator[PreparedIntegrand]:
     """The integrand of a call of integrate(), and the processes that evaluate it meanwhile."""
     if device is not None or is_text(f):
-        yield _on_device(f, region, batch, out, array, threads, workers, components, device)
+        yield _on_device(f, region.domain.dimensions, batch, out, array, threads, workers, components, device)
         return
-    native = c_function(f, region.dimensions)
+    native = c_function(f, region.domain.dimensions)
     if native is not None:
         _refuse_options_of_python(batch, out, array, workers)
         yield PreparedIntegrand(native, components or 0, threads)
@@ -68,7 +74,7 @@ def prepared(
             raise Error(f"array: {array!r} was given; expected a function of a NumPy array, as torch.from_dlpack")
         if out or not batch:
             raise Error("array: it is for functions that get a batch and return values; expected batch=True, out=False")
-    function = _batch_form(f, batch, region.dimensions == 1, array)
+    function = with_points_of(region, _batch_form(f, batch, len(region.shape(1)) == 1, array))
     if out and components is None:
         components = 0
     count = worker_count(workers)
@@ -78,12 +84,12 @@ def prepared(
     if threads != 1:
         raise Error(f"threads: {threads} was given with workers={workers}; each worker has one, expected threads=1")
     with WorkerPool(function, count, out=out, components=components or 0) as pool:
-        yield _with_components(pool, components, region, count)
+        yield replace(_with_components(pool, components, region, count), pool=pool)
 
 
 def _on_device(
     f: Any,
-    region: Domain,
+    dimensions: int,
     batch: bool,
     out: bool,
     array: ArrayMaker | None,
@@ -105,7 +111,7 @@ def _on_device(
             "formulas, or a source in C or CUDA C++"
         )
     _refuse_options_of_python(batch, out, array, workers, "compiled for a device")
-    function, count = device_function(f, device, region.dimensions, components)
+    function, count = device_function(f, device, dimensions, components)
     return PreparedIntegrand(function, count, threads)
 
 
@@ -142,24 +148,24 @@ def _of_arrays(f: Callable[[Any], Any], array: ArrayMaker, x: Array) -> Any:
     return f(array(np.array(x, order="C")))
 
 
-def _with_components(f: Callable[..., Any], components: int | None, region: Domain, threads: int) -> PreparedIntegrand:
+def _with_components(f: Callable[..., Any], components: int | None, region: Region, threads: int) -> PreparedIntegrand:
     return PreparedIntegrand(f, _components(f, region) if components is None else components, threads)
 
 
-def _components(function: Callable[[Array], Any], region: Domain) -> int:
+def _components(function: Callable[[Array], Any], region: Region) -> int:
     """Calls the integrand with a few points of the domain, to see what it returns."""
-    k, d = region.uniforms, region.dimensions
+    k, d = region.domain.uniforms, region.domain.dimensions
     n = next(n for n in (5, 7, 8) if n not in (k, d))
     # Inside the cube and off its symmetries: additive sequences of square roots.
     u = np.modf(0.5 + np.outer(np.arange(1, n + 1), np.sqrt(np.arange(k) + 2.5)))[0]
-    x, _ = region.map(u)
+    x, _ = region.domain.map(u)
     x.flags.writeable = False
     try:
         values = function(x)
     except TypeError as error:  # math.sin, or a function of two arguments
         if hasattr(error, "add_note"):  # Python 3.11
             error.add_note(
-                f"montelux called the integrand with the array of {n} points x, of shape {x.shape}; "
+                f"montelux called the integrand with the array of {n} points x, of shape {region.shape(n)}; "
                 "batch=False calls it with one point at a time"
             )
         raise

@@ -7,17 +7,15 @@ from collections.abc import Callable, Sequence
 from inspect import Parameter, signature
 from typing import Any, Union
 
-import numpy as np
-
 from . import _core
 from ._c_functions import Integrand
-from ._core import Domain, Error
+from ._core import Error
 from ._integrand_forms import ArrayMaker, prepared
 from ._names import MOST_THREADS, did_you_mean, is_number, is_whole, settings_of, unknown
 from ._progress import IntegrationProgress
-from ._result import Array, LogResult, Result, from_core, log_from_core
+from ._regions import Ranges, as_region
+from ._result import LogResult, Result, from_core, log_from_core
 
-Ranges = Union[Domain, Sequence[float], Sequence[Sequence[float]]]
 Progress = Union[bool, Callable[[Result], object]]
 
 #: The methods that can be named, with the classes of their settings.
@@ -50,23 +48,6 @@ _REQUIRED = {
     "control_variate": ("controls", "integrals"),
     "trained": ("density",),
 }
-
-
-def as_domain(domain: Ranges) -> Domain:
-    """A Domain from a Domain, ranges (lower, upper), one per variable, or a single range."""
-    if isinstance(domain, Domain):
-        return domain
-    try:
-        ranges = np.asarray(domain, dtype=float)
-    except (TypeError, ValueError):
-        raise Error(f"domain: {domain!r} was given; expected ranges (lower, upper), one a variable") from None
-    if ranges.shape == (2,):
-        ranges = ranges.reshape(1, 2)
-    if ranges.ndim != 2 or ranges.shape[1] != 2 or len(ranges) == 0:
-        raise Error(
-            f"domain: an array of shape {ranges.shape} was given; expected ranges (lower, upper), one a variable"
-        )
-    return Domain.box([(float(a), float(b)) for a, b in ranges])
 
 
 def as_method(method: Any, settings: dict[str, Any], arguments: Sequence[str]) -> _core.Method:
@@ -107,6 +88,7 @@ def integrate(
     *,
     relative_error: float = 0.0,
     absolute_error: float = 0.0,
+    norm: str = "component",
     evaluations: int | float | None = None,
     time: float | None = None,
     seed: int = 0,
@@ -127,24 +109,28 @@ def integrate(
 ) -> Result:
     """The integral of f over a domain, with its error.
 
-    f(x) is called with many points at once and returns a value for each: x has shape (n, d), or (n,) for one
-    variable, and f returns shape (n,), or (n, m) for m components that are integrated together. x is a view of
+    f(x) is called with many points at once and returns a value for each: x has shape (n, d), or (n,) for a single
+    range, and f returns shape (n,), or (n, m) for m components that are integrated together. x is a view of
     the library's own memory (strided, read-only, coordinate by coordinate) that ends with the call: keep
     `x.copy()`, not x. With `out=True` f(x, y) writes into y, shape (n,) or (n, m), so that values are not
-    copied either. With `batch=False` f takes one point: a float for one variable, else an array of shape (d,).
+    copied either. With `batch=False` f takes one point: a float for a single range, else an array of shape (d,).
     What f raises ends the integration and passes through. With `array`, such as torch.from_dlpack or
     jax.numpy.asarray, f gets array(x) of a copy of x. It may return any object with `__dlpack__`.
 
     f may be a C function, too: a numba cfunc, a scipy.LowLevelCallable, a function of ctypes with declared types;
     double (double), double (int, double *), and more of docs/python-integrands.md.
 
-    domain: a range (lower, upper), or a sequence of them, one a variable; ends may be infinite; or a Domain.
+    domain: a range (lower, upper); or a sequence of ranges, one a variable, where [(0, 1)] gives x of shape (n, 1);
+    or a Domain, where one coordinate gives x of shape (n,). Ends may be infinite.
 
     method: a name ('auto', 'vegas', ...) with its settings as further keyword arguments, or an object such as
     `Vegas(alpha=0.5)`. `montelux.METHODS` lists the names; docs/integration.md says which is for what.
 
     It stops when every component's standard error is below the larger of `absolute_error` and `relative_error`
-    times its value; after this many `evaluations`; or `time` seconds. Without any of these after 1e6 evaluations.
+    times its value; after this many `evaluations`; or `time` seconds. Without any of these it stops after 1e6
+    evaluations, and with an error alone after 60 seconds or 1e9 evaluations at the latest.
+    With norm='vector' relative errors are relative to the Euclidean norm of all values. Ctrl-C stops it, too, and
+    returns the result so far, with the stop 'interrupted'; it raises KeyboardInterrupt before the first step is done.
 
     The result depends on f, domain, method, budget and seed, and not on `threads` or `workers`. Python runs one
     thread at a time, so that more than one helps only C functions and those that release the interpreter's lock
@@ -163,10 +149,12 @@ def integrate(
     covariance: False leaves out covariances, for thousands of components. non_finite: 'skip' leaves out NaN and
     infinite values, counted and reported in `warnings`; 'throw' ends with an Error that names the point.
 
-    progress: True shows a line on standard error; a function is called with the Result so far, between steps.
+    progress: True shows a line on standard error; a function is called with the Result so far, between steps, and
+    stops the run as Ctrl-C does by returning False. With `workers` it is called from another thread.
 
     checkpoint: a file that keeps the running state, written every `checkpoint_every` seconds and at the end;
-    with `resume` the run continues from it, to the digits of an uninterrupted one.
+    with `resume` the run continues from it, to the digits of an uninterrupted one. Without, an existing file is an
+    error.
     """
     result: Result = _run(
         _core.integrate,
@@ -176,6 +164,7 @@ def integrate(
         settings,
         relative_error=relative_error,
         absolute_error=absolute_error,
+        norm=norm,
         evaluations=evaluations,
         time=time,
         seed=seed,
@@ -238,6 +227,7 @@ def integrate_log(
         settings,
         relative_error=relative_error,
         absolute_error=0.0,
+        norm="component",
         evaluations=evaluations,
         time=time,
         seed=seed,
@@ -268,6 +258,7 @@ def _run(
     *,
     relative_error: float,
     absolute_error: float,
+    norm: str,
     evaluations: int | float | None,
     time: float | None,
     seed: int,
@@ -287,10 +278,14 @@ def _run(
     made: Callable[[Any, bool, int], Any],
 ) -> Any:
     """Checks the arguments, calls the library, and makes of its result what `made` does."""
-    region = as_domain(domain)
+    region = as_region(domain)
     chosen = as_method(method, settings, _ARGUMENTS[call])
-    if non_finite not in ("skip", "throw"):
-        raise Error("non_finite: " + unknown("choice", non_finite, ["skip", "throw"]))
+    for name, choice, choices in (
+        ("norm", norm, ("component", "vector")),
+        ("non_finite", non_finite, ("skip", "throw")),
+    ):
+        if choice not in choices:
+            raise Error(f"{name}: " + unknown("choice", choice, choices))
     for name, error in (("relative_error", relative_error), ("absolute_error", absolute_error)):
         if not is_number(error):
             raise Error(f"{name}: {error!r} was given; expected a number")
@@ -309,30 +304,36 @@ def _run(
     if not (isinstance(progress, bool) or callable(progress)):
         raise Error(f"progress: {progress!r} was given; expected True, False or a function")
     with prepared(f, region, batch, out, array, int(threads), int(workers), components, device) as integrand:
+        cancel = _core.CancelFlag()
         watch = IntegrationProgress(made is log_from_core) if progress is True else progress
         report = None
         vector = integrand.components > 0
         if watch:
             report = lambda r: watch(from_core(r, vector, int(seed)))  # noqa: E731
         try:
-            result = call(
-                integrand.function,
-                integrand.components,
-                out,
-                region,
-                chosen,
-                float(relative_error),
-                float(absolute_error),
-                0 if evaluations is None else int(evaluations),
-                0.0 if time is None else float(time),
-                int(seed),
-                integrand.threads,
-                non_finite == "throw",
-                covariance,
-                report,
-                "" if checkpoint is None else os.fspath(checkpoint),
-                checkpoint_every,
-                resume,
+            result = integrand.run(
+                lambda: call(
+                    integrand.function,
+                    integrand.components,
+                    out,
+                    region.domain,
+                    chosen,
+                    float(relative_error),
+                    float(absolute_error),
+                    norm == "vector",
+                    0 if evaluations is None else int(evaluations),
+                    0.0 if time is None else float(time),
+                    int(seed),
+                    integrand.threads,
+                    non_finite == "throw",
+                    covariance,
+                    report,
+                    "" if checkpoint is None else os.fspath(checkpoint),
+                    checkpoint_every,
+                    resume,
+                    cancel,
+                ),
+                cancel,
             )
         finally:
             if isinstance(watch, IntegrationProgress):
@@ -340,7 +341,7 @@ def _run(
     finished = made(result, vector, int(seed))
     density = finished.density
     if density is not None:
-        density._domain = region  # with which it is pickled
+        density._region = region  # with which it is pickled
     return finished
 
 
@@ -363,8 +364,8 @@ def train_map(
 
     Start these with `Vegas(training_iterations=0, map=...)`. None of the evaluations goes into an integral.
     """
-    region = as_domain(domain)
+    region = as_region(domain)
     with prepared(f, region, components=components) as integrand:
         return _core.train_map(
-            integrand.function, region, int(evaluations), settings or _core.Vegas(), seed, integrand.components
+            integrand.function, region.domain, int(evaluations), settings or _core.Vegas(), seed, integrand.components
         )

@@ -16,6 +16,7 @@ import numpy as np
 from . import _core
 from ._integrate import METHODS
 from ._names import settings_of
+from ._regions import Region, as_region
 
 
 def _kept(argument: Any) -> Any:
@@ -63,12 +64,12 @@ def _reduced_map(grid: _core.AdaptiveMap) -> tuple[Any, ...]:
 
 
 def _reduced_density(density: _core.TrainedDensity) -> tuple[Any, ...]:
-    return _density_again, (density._bytes(), getattr(density, "_domain", None))
+    return _density_again, (density._bytes(), getattr(density, "_region", None))
 
 
-def _density_again(content: bytes, domain: _core.Domain | None) -> _core.TrainedDensity:
-    density = _core.TrainedDensity._from_bytes(content, domain)
-    density._domain = domain  # type: ignore[attr-defined]
+def _density_again(content: bytes, region: Region | None) -> _core.TrainedDensity:
+    density = _core.TrainedDensity._from_bytes(content, region and region.domain)
+    density._region = region  # type: ignore[attr-defined]
     return density
 
 
@@ -78,7 +79,7 @@ def _note_domain(load: Callable[..., _core.TrainedDensity]) -> Callable[..., _co
     @wraps(load, updated=())
     def loading(path: str, domain: _core.Domain | None = None) -> _core.TrainedDensity:
         density = load(path, domain)
-        density._domain = domain  # type: ignore[attr-defined]
+        density._region = None if domain is None else as_region(domain)  # type: ignore[attr-defined]
         return density
 
     return loading

@@ -58,7 +58,7 @@ class Result(Computes):
     method: str
     #: Why Auto picked it; else empty.
     reason: str
-    #: 'error_target', 'evaluations', 'time', 'cancelled' or 'finished'.
+    #: 'error_target', 'evaluations', 'time', 'interrupted', 'finished' or 'diverges'.
     stop: str
     #: Reasons why the value or its error may be wrong, as sentences. Normally empty.
     warnings: tuple[str, ...]
@@ -71,6 +71,8 @@ class Result(Computes):
     history: History
     #: Why the newest checkpoint could not be resumed and the previous one was; else empty.
     checkpoint_refused_because: str = ""
+    #: How the result was judged, as sentences that are no warnings.
+    notes: tuple[str, ...] = ()
     #: What the method learned about the integrand; None where it trains no density.
     density: _core.TrainedDensity | None = None
     _text: str = ""
@@ -217,6 +219,11 @@ class LogResult(Computes):
         return self.relative.warnings
 
     @property
+    def notes(self) -> tuple[str, ...]:
+        """How the result was judged, as sentences that are no warnings."""
+        return self.relative.notes
+
+    @property
     def evaluations(self) -> int:
         """Of the integrand, pilots included."""
         return self.relative.evaluations
@@ -233,7 +240,7 @@ class LogResult(Computes):
 
     @property
     def stop(self) -> str:
-        """'error_target', 'evaluations', 'time', 'cancelled' or 'finished'."""
+        """'error_target', 'evaluations', 'time', 'interrupted', 'finished' or 'diverges'."""
         return self.relative.stop
 
     @property
@@ -329,6 +336,7 @@ def from_core(r: _core.IntegrationResult, vector: bool, seed: int) -> Result:
         seconds=r.seconds,
         history=history,
         checkpoint_refused_because=r.checkpoint_refused_because,
+        notes=tuple(r.notes),
         density=r.density,
         _text=str(r),
         _run=Run(standard_error, covariance, seed if r.statistical else None, tuple(r.warnings)),

@@ -13,8 +13,8 @@ from . import _core
 from ._c_functions import Integrand
 from ._core import Error
 from ._integrand_forms import ArrayMaker, prepared
-from ._integrate import Ranges, as_domain
 from ._names import MOST_THREADS, UnknownAttribute, is_whole, unknown
+from ._regions import Ranges, as_region
 from ._result import Array
 
 
@@ -101,9 +101,9 @@ def sample(
         >>> draws = montelux.sample(lambda x: -(x**2) / 2, (-np.inf, np.inf), sampler="slice")
         >>> idata = arviz.from_dict(posterior=draws.posterior)
 
-    log_density is a function as integrate() takes it, of many points x of shape (n, d), or (n,) for one variable: with
-    `batch=False` of one point, with `array` of another library's array, or a C function (numba, ctypes, scipy). It
-    returns logarithms; -inf is a density of zero. domain: ranges, whose ends may be infinite.
+    log_density is a function as integrate() takes it, of many points x of shape (n, d), or (n,) for a single range:
+    with `batch=False` of one point, with `array` of another library's array, or a C function (numba, ctypes, scipy).
+    It returns logarithms; -inf is a density of zero. domain: ranges, whose ends may be infinite.
 
     sampler: 'metropolis', random walks that adapt during the burn-in, one point a call; 'ensemble', walkers that
     stretch towards one another (Goodman and Weare 2010); 'slice', walkers that slice along one another's differences
@@ -117,7 +117,7 @@ def sample(
 
     The draws depend on the seed and not on `threads` or `workers`.
     """
-    region = as_domain(domain)
+    region = as_region(domain)
     if not isinstance(sampler, str) or sampler not in _core.chain_samplers():
         raise Error("sampler: " + unknown("sampler", str(sampler), _core.chain_samplers()))
     for name, number, least, below in (
@@ -144,7 +144,7 @@ def sample(
     with prepared(log_density, region, batch, False, array, int(threads), int(workers), 0) as integrand:
         made = _core.sample_chains(
             integrand.function,
-            region,
+            region.domain,
             sampler,
             int(chains),
             0 if walkers is None else int(walkers),
@@ -152,7 +152,7 @@ def sample(
             int(burn_in),
             int(thin),
             int(seed),
-            _starts(starts, region.dimensions),
+            _starts(starts, region.domain.dimensions),
             list(names),
             integrand.threads,
         )

@@ -12,20 +12,22 @@ import pickle
 import signal
 import threading
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from multiprocessing.connection import Connection
 from queue import SimpleQueue
 from types import TracebackType
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
-from ._core import Error
+from ._core import CancelFlag, Error
 from ._foreign_arrays import as_numpy
 from ._result import Array
 
 _SECONDS_TO_END = 5.0  # for processes that have nothing to do
 _END = b""  # the message that ends a process
+_Answer = TypeVar("_Answer")
 
 
 class WorkerTraceback(Exception):
@@ -57,9 +59,10 @@ class WorkerPool:
         try:
             context = multiprocessing.get_context()
             shared = _as_shared(f, context.get_start_method())
-            for _ in range(workers):
-                others = [worker.connection for worker in self._workers]
-                self._workers.append(_Worker(context, shared, others))
+            with _ctrl_c_waits():
+                for _ in range(workers):
+                    others = [worker.connection for worker in self._workers]
+                    self._workers.append(_Worker(context, shared, others))
             for worker in self._workers:
                 worker.wait_until_ready()
                 self._idle.put(worker)
@@ -79,6 +82,35 @@ class WorkerPool:
             return values
         y[...] = values
         return None
+
+    def run(self, work: Callable[[], _Answer], cancel: CancelFlag) -> _Answer:
+        """What work() returns, which calls this pool from a thread of its own.
+
+        Ctrl-C in this thread requests `cancel`, and ends the calls that are running by an error.
+        """
+        ended = threading.Event()
+        answers: list[_Answer] = []
+        errors: list[BaseException] = []
+
+        def run() -> None:
+            try:
+                answers.append(work())
+            except BaseException as error:
+                errors.append(error)
+            finally:
+                ended.set()
+
+        threading.Thread(target=run, daemon=True).start()
+        while True:
+            try:
+                ended.wait()
+                break
+            except KeyboardInterrupt as interruption:
+                cancel.request()
+                self._fail(interruption)
+        if errors:
+            raise errors[0]
+        return answers[0]
 
     def __enter__(self) -> WorkerPool:
         return self
@@ -112,6 +144,16 @@ class WorkerPool:
         for worker in self._workers:
             worker.process.join()
             worker.connection.close()
+
+
+@contextmanager
+def _ctrl_c_waits() -> Iterator[None]:
+    """Holds SIGINT back, also in the processes that are started meanwhile."""
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 class _Worker:
@@ -193,6 +235,7 @@ def _as_shared(f: Callable[..., Any], start_method: str) -> Any:
 
 def _serve(connection: Connection, inherited: list[Connection], shared: Any) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the other process ends this one
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
     for other in inherited:
         other.close()
     try:

@@ -2,6 +2,7 @@
 
 #include "python/src/bindings.h"
 #include "python/src/devices.h"
+#include "python/src/interruptible.h"
 #include "python/src/python_function.h"
 #include <algorithm>
 #include <array>
@@ -68,7 +69,7 @@ Integrand interruptible_by_signals(const Integrand& f) {
         if (std::this_thread::get_id() != caller || Clock::now() < *next) return;
         *next = Clock::now() + std::chrono::milliseconds(50);
         nb::gil_scoped_acquire lock;
-        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+        if (PyErr_CheckSignals() != 0) throw_python_error();
     });
 }
 

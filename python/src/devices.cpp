@@ -1,6 +1,7 @@
 #include "python/src/devices.h"
 
 #include "python/src/bindings.h"
+#include "python/src/interruptible.h"
 #include <memory>
 #include <string>
 #include <utility>
@@ -23,7 +24,7 @@ Integrand CompiledFunction::integrand() const {
     OnDevice device = f.on_device();
     device.before.emplace_back([](std::size_t) {
         nb::gil_scoped_acquire lock;
-        if (PyErr_CheckSignals() != 0) throw nb::python_error();
+        if (PyErr_CheckSignals() != 0) throw_python_error();
     });
     return f.with_device(std::move(device));
 }

@@ -2,6 +2,7 @@
 
 #include "python/src/bindings.h"
 #include "python/src/c_function.h"
+#include "python/src/interruptible.h"
 #include "python/src/numpy_bridge.h"
 #include <chrono>
 #include <optional>
@@ -9,6 +10,7 @@
 #include <utility>
 
 #include "montelux/mc/integrate/integrate_log.h"
+#include "montelux/mc/integrate/interruptible.h"
 #include "montelux/mc/integrate/trained/trained_density.h"
 
 namespace montelux::python {
@@ -28,19 +30,47 @@ std::string text_of(const LogIntegrationResult& r) {
     return "log Z = " + to_string(Estimate{r.log_value, r.log_error}) + all.substr(all.find('\n'));
 }
 
+const IntegrationResult& run_of(const IntegrationResult& r) { return r; }
+const IntegrationResult& run_of(const LogIntegrationResult& r) { return r.relative; }
+
+// f, whose exceptions after a request to stop belong to it: the processes that evaluate f have been ended.
+Integrand until_cancelled(const Integrand& f, const CancelFlag& cancel) {
+    return f
+        .with_function([f, &cancel](const PointBatch& x, ValueBatch y) {
+            try {
+                f(x, y);
+            } catch (const nb::python_error&) {
+                if (!cancel.requested()) throw;
+                throw IntegrandInterrupted{};
+            }
+        })
+        .with_device(f.on_device());
+}
+
 template <typename Integrate>
 auto run(const Integrate& integrate, const nb::object& f, int components, bool into, const Domain& domain,
-         const Method& method, const Budget& budget, IntegrationOptions options, const nb::object& progress) {
-    const Integrand integrand = integrand_of(f, components, into);
+         const Method& method, const Budget& budget, IntegrationOptions options, const nb::object& progress,
+         CancelFlag& cancel) {
+    const Integrand integrand = until_cancelled(integrand_of(f, components, into), cancel);
+    const InterruptibleRun here(cancel);
+    options.cancel = &cancel;
     if (!progress.is_none()) {
-        // Called between steps from this thread, while the result is this scope's.
-        options.progress = [&progress](const IntegrationResult& r) {
+        // Called between steps, while the result is this scope's.
+        options.progress = [&](const IntegrationResult& r) {
             nb::gil_scoped_acquire lock;
-            progress(nb::cast(r, nb::rv_policy::copy));
+            try {
+                if (progress(nb::cast(r, nb::rv_policy::copy)).is(nb::handle(Py_False))) cancel.request();
+            } catch (const nb::python_error& error) {
+                if (!InterruptibleRun::interrupt(error)) throw;
+            }
         };
     }
     nb::gil_scoped_release unlocked;
-    return integrate(integrand, domain, method, budget, options);
+    auto result = integrate(integrand, domain, method, budget, options);
+    const bool has_value = !run_of(result).history.empty();
+    if (here.is_inside_interrupted() || (run_of(result).stop == StopReason::interrupted && !has_value))
+        throw IntegrandInterrupted{};
+    return result;
 }
 
 // Binds a function with the arguments of montelux::integrate.
@@ -49,10 +79,10 @@ void bind_call(nb::module_& m, const char* name, const char* help, const Integra
     m.def(
         name,
         [integrate](const nb::object& f, int components, bool into, const Domain& domain,
-                    const Method& method, double relative_error, double absolute_error,
+                    const Method& method, double relative_error, double absolute_error, bool vector_norm,
                     std::uint64_t evaluations, double time, std::uint64_t seed, int threads,
                     bool throw_non_finite, bool covariance, const nb::object& progress,
-                    const std::string& checkpoint, double checkpoint_every, bool resume) {
+                    const std::string& checkpoint, double checkpoint_every, bool resume, CancelFlag& cancel) {
             IntegrationOptions options;
             options.seed = seed;
             options.threads = threads;
@@ -62,17 +92,30 @@ void bind_call(nb::module_& m, const char* name, const char* help, const Integra
             options.checkpoint_every = std::chrono::duration<double>(checkpoint_every);
             options.resume = resume;
             const Budget budget{relative_error, absolute_error, evaluations,
-                                std::chrono::duration<double>(time)};
-            return run(integrate, f, components, into, domain, method, budget, std::move(options), progress);
+                                std::chrono::duration<double>(time),
+                                vector_norm ? ErrorNorm::vector : ErrorNorm::component};
+            return run(integrate, f, components, into, domain, method, budget, std::move(options), progress,
+                       cancel);
         },
         "f"_a, "components"_a, "into"_a, "domain"_a, "method"_a, "relative_error"_a, "absolute_error"_a,
-        "evaluations"_a, "time"_a, "seed"_a, "threads"_a, "throw_non_finite"_a, "covariance"_a,
-        "progress"_a.none(), "checkpoint"_a, "checkpoint_every"_a, "resume"_a, help);
+        "vector_norm"_a, "evaluations"_a, "time"_a, "seed"_a, "threads"_a, "throw_non_finite"_a,
+        "covariance"_a, "progress"_a.none(), "checkpoint"_a, "checkpoint_every"_a, "resume"_a, "cancel"_a,
+        help);
 }
 
 } // namespace
 
 void bind_integrate(nb::module_& m) {
+    nb::register_exception_translator([](const std::exception_ptr& thrown, void*) {
+        try {
+            std::rethrow_exception(thrown);
+        } catch (const IntegrandInterrupted&) {
+            PyErr_SetNone(PyExc_KeyboardInterrupt);
+        }
+    });
+    nb::class_<CancelFlag>(m, "CancelFlag", "A request to stop, from any thread.")
+        .def(nb::init<>())
+        .def("request", &CancelFlag::request);
     nb::class_<IntegrationResult>(m, "IntegrationResult",
                                   "What the integrator returns; montelux.Result is made of it.")
         .def_prop_ro("value", [](const IntegrationResult& r) { return new_array(r.value); })
@@ -96,6 +139,7 @@ void bind_integrate(nb::module_& m) {
         .def_ro("reason", &IntegrationResult::reason)
         .def_prop_ro("stop", [](const IntegrationResult& r) { return to_string(r.stop); })
         .def_ro("warnings", &IntegrationResult::warnings)
+        .def_ro("notes", &IntegrationResult::notes)
         .def_ro("checkpoint_refused_because", &IntegrationResult::checkpoint_refused_because)
         .def_ro("seconds", &IntegrationResult::seconds)
         .def_prop_ro("density",

@@ -27,4 +27,27 @@ void run_interruptibly(const Work& work) {
     done.get();
 }
 
+// An integration that Ctrl-C ends with its result so far, while this object lives on the thread that called it. An
+// integrand may integrate: the runs of a thread form a stack, and Ctrl-C ends all of them.
+class InterruptibleRun {
+  public:
+    explicit InterruptibleRun(CancelFlag& cancel);
+    InterruptibleRun(const InterruptibleRun&) = delete;
+    InterruptibleRun& operator=(const InterruptibleRun&) = delete;
+    ~InterruptibleRun();
+
+    bool is_inside_interrupted() const { return outer_ != nullptr && outer_->cancel_.requested(); }
+    // Requests the runs of this thread to stop if an error of Python is Ctrl-C; false: it is not, or there are none.
+    static bool interrupt(const nb::python_error& error);
+
+  private:
+    static thread_local InterruptibleRun* innermost;
+
+    CancelFlag& cancel_;
+    InterruptibleRun* outer_;
+};
+
+// Throws the error of Python that is set, or IntegrandInterrupted where that interrupts runs. Requires the lock.
+[[noreturn]] void throw_python_error();
+
 } // namespace montelux::python

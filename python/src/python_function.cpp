@@ -1,5 +1,6 @@
 #include "python/src/python_function.h"
 
+#include "python/src/interruptible.h"
 #include "python/src/numpy_bridge.h"
 #include <utility>
 
@@ -14,7 +15,8 @@ namespace {
     nb::python_error error;
     if (is_kept_elsewhere(x) && error.traceback().is_valid())
         nb::module_::import_("traceback").attr("clear_frames")(error.traceback());
-    throw error;
+    error.restore();
+    throw_python_error();
 }
 
 nb::object called(nb::handle f, PyObject** arguments, std::size_t count, const nb::object& x) {
@@ -78,7 +80,7 @@ double PythonFunction::operator()(double x) const {
     PyObject* arguments[] = {nullptr, argument.ptr()};
     PyObject* result =
         PyObject_Vectorcall(function_.get(), arguments + 1, 1 | PY_VECTORCALL_ARGUMENTS_OFFSET, nullptr);
-    if (!result) throw nb::python_error();
+    if (!result) throw_python_error();
     nb::object returned = nb::steal(result);
     const double value = PyFloat_AsDouble(returned.ptr());
     if (value == -1 && PyErr_Occurred()) {

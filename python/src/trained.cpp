@@ -41,9 +41,15 @@ bool throws(const std::string& policy) {
     return policy == "throw";
 }
 
+// f of points in the shape that the integrand had when the density was trained.
+PythonFunction function_of(const TrainedDensity& density, const nb::object& f, const char* what) {
+    const nb::object region = nb::getattr(nb::find(density), "_region", nb::none());
+    return {nb::module_::import_("montelux._regions").attr("with_points_of")(region, f), what};
+}
+
 // A function of points with as many components as it returns at a few points of the density.
-Integrand observables_of(const TrainedDensity& density, nb::object f, const char* what) {
-    PythonFunction function(std::move(f), what);
+Integrand observables_of(const TrainedDensity& density, const nb::object& f, const char* what) {
+    const PythonFunction function = function_of(density, f, what);
     PointBuffer v(64, density.unit().dimensions() + 1);
     fill_random(v, 0, 0, 0);
     UnitDraws draws;
@@ -60,10 +66,10 @@ struct GivenFunction {
     nb::object owner;
     Integrand integrand;
 };
-GivenFunction given_function(const TrainedDensity& density, nb::object f, const char* what) {
+GivenFunction given_function(const TrainedDensity& density, const nb::object& f, const char* what) {
     nb::object native =
         nb::module_::import_("montelux._c_functions").attr("c_function")(f, density.domain().dimensions());
-    if (native.is_none()) return {nb::object(), integrand_of(PythonFunction(std::move(f), what), 0, false)};
+    if (native.is_none()) return {nb::object(), integrand_of(function_of(density, f, what), 0, false)};
     Integrand integrand = integrand_of(native, 0, false);
     return {std::move(native), std::move(integrand)};
 }
@@ -179,9 +185,8 @@ void bind_trained(nb::module_& m) {
     nb::class_<TrainedDensity>(
         m, "TrainedDensity", nb::dynamic_attr(),
         "What an integration learned about its integrand (Result.density): to draw samples from, keep in a "
-        "file, and use for other integrands. Functions take points of shape (n, d), or (n,) for one "
-        "variable, "
-        "and return shape (n,).")
+        "file, and use for other integrands. Functions take points in the integrand's shape, (n, d) or (n,), "
+        "and return shape (n,). For a density of one variable from a file that is (n,).")
         .def_prop_ro(
             "dimensions", [](const TrainedDensity& d) { return d.domain().dimensions(); },
             "Coordinates of a point.")
@@ -218,7 +223,7 @@ void bind_trained(nb::module_& m) {
                int threads, std::uint64_t max_draws, const std::string& non_finite) {
                 const UnweightingOptions options =
                     options_of(log, seed, threads, max_draws, throws(non_finite));
-                const GivenFunction target = given_function(density, std::move(f), "target");
+                const GivenFunction target = given_function(density, f, "target");
                 nb::gil_scoped_release unlocked;
                 return weighted_samples(density, target.integrand, n, options);
             },
@@ -234,7 +239,7 @@ void bind_trained(nb::module_& m) {
                 UnweightingOptions options = options_of(log, seed, threads, max_draws, throws(non_finite));
                 options.pilot = pilot;
                 options.overweight_share = overweight_share;
-                const GivenFunction target = given_function(density, std::move(f), "target");
+                const GivenFunction target = given_function(density, f, "target");
                 nb::gil_scoped_release unlocked;
                 return unweighted_samples(density, target.integrand, n, options);
             },
@@ -250,8 +255,8 @@ void bind_trained(nb::module_& m) {
             [](const TrainedDensity& density, nb::object f, nb::object observables, std::uint64_t draws,
                bool log, std::uint64_t seed, int threads, const std::string& non_finite) {
                 const UnweightingOptions options = options_of(log, seed, threads, 0, throws(non_finite));
-                const Integrand h = observables_of(density, std::move(observables), "observables");
-                const GivenFunction target = given_function(density, std::move(f), "target");
+                const Integrand h = observables_of(density, observables, "observables");
+                const GivenFunction target = given_function(density, f, "target");
                 nb::gil_scoped_release unlocked;
                 return expectations(density, target.integrand, h, draws, options);
             },
@@ -266,9 +271,9 @@ void bind_trained(nb::module_& m) {
                std::uint64_t draws, bool log, std::uint64_t seed, int threads,
                const std::string& non_finite) {
                 const UnweightingOptions options = options_of(log, seed, threads, 0, throws(non_finite));
-                const GivenFunction of_points = given_function(density, std::move(observable), "observable");
+                const GivenFunction of_points = given_function(density, observable, "observable");
                 const Integrand h = histogram_bins(of_points.integrand, vector_of(edges, "edges"));
-                const GivenFunction target = given_function(density, std::move(f), "target");
+                const GivenFunction target = given_function(density, f, "target");
                 nb::gil_scoped_release unlocked;
                 return expectations(density, target.integrand, h, draws, options);
             },

@@ -6,8 +6,6 @@ import ctypes
 import ctypes.util
 import itertools
 import math
-import subprocess
-import sys
 import threading
 
 import numpy as np
@@ -207,30 +205,6 @@ def test_wrong_dimensions_are_answered():
     for f in (sine(), LowLevelCallable(sine(), "double (double)")):
         with pytest.raises(montelux.Error, match=sentence):
             montelux.integrate(f, BOX)
-
-
-INTERRUPTED = """
-import ctypes, os, signal, threading, time
-import montelux
-signal.signal(signal.SIGINT, signal.default_int_handler)
-f = ctypes.CDLL(None).{name}
-f.argtypes, f.restype = [ctypes.c_double], ctypes.c_double
-def soon():
-    time.sleep(0.3)
-    os.kill(os.getpid(), signal.SIGINT)
-threading.Thread(target=soon, daemon=True).start()
-begin = time.monotonic()
-try:
-    montelux.integrate(f, (0, 1), "basic", time=30, threads=2)
-except KeyboardInterrupt:
-    print("interrupted after", time.monotonic() - begin)
-"""
-
-
-def test_ctrl_c_ends_an_integration():
-    code = INTERRUPTED.format(name="sin").replace("CDLL(None)", f"CDLL({ctypes.util.find_library('m')!r})")
-    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
-    assert float(done.stdout.removeprefix("interrupted after ")) < 10, done.stderr
 
 
 def test_a_call_takes_below_20_nanoseconds():

@@ -56,13 +56,6 @@ def test_arrays_are_views_of_the_library_s_buffers(dimensions):
     assert seen["strides"] == ((8,) if dimensions == 1 else (8, 800))
 
 
-def test_one_variable_has_shape_n():
-    shapes = set()
-    montelux.integrate(lambda x: shapes.add(x.ndim) or x, (0, 1), "basic", evaluations=5000)
-    montelux.integrate(lambda x: shapes.add(x.ndim) or x, [(0, 1)], "basic", evaluations=5000)
-    assert shapes == {1}
-
-
 @pytest.mark.parametrize("name", ["basic", "vegas", "quasi", "cubature", "adaptive"])
 def test_slow_functions_that_release_the_lock_run_at_the_same_time(name):
     running, most, calls, waits = 0, 0, 0, 0
@@ -297,6 +290,27 @@ def test_progress_is_reported():
     assert [r.evaluations for r in seen] == sorted(r.evaluations for r in seen)
 
 
+def test_progress_stops_the_run_by_returning_false():
+    seen = []
+
+    def three(r):
+        seen.append(r)
+        return len(seen) < 3
+
+    for workers in (1, 2):
+        seen.clear()
+        r = montelux.integrate(sine_times_y, BOX, "basic", time=60, progress=three, workers=workers)
+        assert r.stop == "interrupted" and not r.converged and len(seen) == 3
+        assert r.value == seen[-1].value and r.evaluations >= seen[-1].evaluations
+    for ignored in (None, 0, np.False_, ""):
+        r = montelux.integrate(sine_times_y, BOX, "quasi", evaluations=5000, progress=lambda r, i=ignored: i)
+        assert r.stop == "evaluations"
+    log = montelux.integrate_log(lambda x: -x * x, (-9, 9), "basic", time=60, progress=lambda r: False)
+    assert log.stop == "interrupted" and log.log_value == pytest.approx(math.log(math.pi) / 2, abs=0.5)
+    with pytest.raises(ZeroDivisionError):
+        montelux.integrate(sine_times_y, BOX, "quasi", evaluations=5000, progress=lambda r: 1 / 0)
+
+
 def test_progress_line(capsys):
     montelux.integrate(sine_times_y, BOX, "quasi", evaluations=5000, progress=True)
     assert capsys.readouterr().out == ""
@@ -317,6 +331,44 @@ def test_resumed_runs_have_the_same_bits(tmp_path):
     assert (resumed.value, resumed.standard_error) == (whole.value, whole.standard_error)
     with pytest.raises(montelux.Error, match="another integrand"):
         montelux.integrate(f, BOX, "quasi", absolute_error=2e-6, seed=3, checkpoint=state, resume=True)
+
+
+def test_a_checkpoint_is_not_overwritten(tmp_path):
+    state = tmp_path / "run.state"
+
+    def run(**named):
+        return montelux.integrate(sine_times_y, BOX, "quasi", seed=2, checkpoint=state, **named)
+
+    run(evaluations=5000)
+    before = state.read_bytes()
+    with pytest.raises(montelux.Error, match="run.state"):
+        run(evaluations=5000)
+    assert state.read_bytes() == before
+    assert run(evaluations=50_000, resume=True).evaluations > 5000
+
+
+def test_relative_errors_of_the_vector():
+    """A component that is small beside the others needs no relative error of its own."""
+
+    def f(x):
+        return np.stack([1 + x[:, 0], 1e-3 * np.sin(2 * math.pi * x[:, 1])], axis=-1)
+
+    r = montelux.integrate(f, [(0, 1), (0, 1)], "basic", relative_error=1e-3, norm="vector")
+    assert r.converged and np.all(r.standard_error <= 1e-3 * np.linalg.norm(r.value))
+    assert isinstance(r.notes, tuple)
+
+
+def test_notes_say_how_a_result_was_judged():
+    """The second component is zero within its error, which has no relative size."""
+
+    def f(x):
+        return np.stack([1 + x[:, 0], x[:, 1] - 0.5], axis=-1)
+
+    r = montelux.integrate(f, [(0, 1), (0, 1)], "basic", relative_error=1e-2)
+    assert any("component" in note for note in r.notes) and r.to_dict()["notes"] == list(r.notes)
+    assert all(note in str(r) and note in r._repr_html_() for note in r.notes)
+    log = montelux.integrate_log(lambda x: -x * x, (-9, 9), evaluations=1000)
+    assert log.notes == log.relative.notes == tuple(log.to_dict()["relative"]["notes"])
 
 
 # Settings.

@@ -41,6 +41,7 @@ def sine_times_y(x):
         ({"progress": 3}, "expected True, False or a function"),
         ({"seed": -1}, "expected a whole number in"),
         ({"non_finite": "ignore"}, "there is no choice 'ignore'"),
+        ({"norm": "vectr"}, r"norm: there is no choice 'vectr' \(did you mean 'vector'\?\)"),
         ({"method": "vegas", "points": "sobol", "replicates": 1}, "replicates"),
         *(({name: 1}, rf"there is no setting '{name}' \(did you mean 'relative_error'\?\)") for name in ("rtol", "epsrel")),
         *(({name: 1}, rf"'{name}' \(did you mean 'absolute_error'\?\)") for name in ("atol", "epsabs")),

@@ -26,7 +26,9 @@ def two(x: Array) -> Array:
 
 def integrals() -> montelux.Uncertain:
     box: list[tuple[float, float]] = [(0, 1), (0, 1)]
-    r: montelux.Result = montelux.integrate(two, box, "basic", evaluations=2000, seed=1)
+    r: montelux.Result = montelux.integrate(two, box, "basic", evaluations=2000, seed=1, norm="vector")
+    notes: tuple[str, ...] = (*r.notes, *r.warnings)
+    assert all(isinstance(note, str) for note in notes)
     history: montelux.History = r.history
     assert len(history.value) == len(history.seconds) and r.converged is False
     ratio = r[0] / r[1]

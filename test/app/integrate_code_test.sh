@@ -85,6 +85,21 @@ expect 1 "g.cpp: has no function 'integrand'" integrate --source g.cpp --over x=
 printf 'double integrand(int n, const double *x) { return x[0] }\n' >bad.c
 expect 1 "bad.c: the compiler cc ended with exit code 1" integrate --source bad.c --over x=0:1
 grep -q "bad.c:1:" out || fail "the compiler's message is missing: $(cat out)"
+# A function of another form is not called.
+expect 2 "f.c: the function 'moments' is declared as void moments(int n, const double *x, int m, double *y)" \
+    integrate --source f.c:moments --over x=0:1
+expect 2 "expected double moments(int n, const double *x), or --components M" integrate --source f.c:moments --over x=0:1
+expect 2 "or --let NAME=VALUE for each parameter" integrate --source f.c:scaled --over x=0:1
+expect 2 "or --components M and --let NAME=VALUE" integrate --source f.c:lines --over x=0:1
+expect 2 "or no --components" integrate --source f.c --components 2 --over x=0:1
+expect 2 "'twice' is declared as double twice" integrate --source g.cpp:twice --components 2 --over x=0:1
+printf 'double integrand(double x) { return x; }\n' >h.c
+expect 2 "'integrand' is declared otherwise; expected double integrand(int n, const double *x)" \
+    integrate --source h.c --over x=0:1
+printf 'double integrand(int n, double *x) { return x[0]; }\n' >h.c
+value 0.5 1e-3 --source h.c --over x=0:1
+value 0.5 1e-3 --source f.c:lines --components 1 --let a=1 --over x=0:a
+value 0.333333 1e-3 --source f.c --let b=1 --over x=0:b # a function may ignore its parameters
 expect 1 "is not a source in C (.c) or C++" integrate --source formula --over x=0:1
 export CC=no-such-compiler
 expect 1 "no-such-compiler: cannot be started" integrate --source f.c --over x=0:1

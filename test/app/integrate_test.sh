@@ -206,7 +206,7 @@ wait $pid
 code=$?
 [ $code -eq 130 ] || fail "INT: exit code $code instead of 130: $(cat err)"
 close "$(field value)" 0.5 0.01 || fail "INT: $(head -n 3 json)"
-grep -q '"stop": "cancelled"' json || fail "INT: the result does not say so"
+grep -q '"stop": "interrupted"' json || fail "INT: the result does not say so"
 if command -v script >/dev/null; then
     script -qec "'$montelux' integrate x --over x=0:1 --method basic --relative-error 1e-9 --time 0.5" /dev/null >out 2>&1 </dev/null
     grep -q 'evaluations, 0\.' out || fail "no progress on a terminal: $(cat out)"

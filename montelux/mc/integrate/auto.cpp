@@ -29,6 +29,7 @@ constexpr double largest_first = 0.25; // share of a fixed number of evaluations
 // With so few evaluations left, in regions, the first one decides: cubature is given up where not even errors
 // falling by this power of the evaluations would do.
 constexpr double few_regions = 32, hopeful_rate = 2;
+constexpr double patience_of_one = 100; // factor of the evaluations that rules may need in one variable
 constexpr std::uint64_t patience = 60000; // evaluations of sampling before cubature gets a second chance,
 constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
 // A localised result is compared with sampling at a multiple of the target, within these relative errors.
@@ -86,7 +87,7 @@ class AutoEstimator final : public Estimator {
         if (switched_) return step_both(request);
         if (diverges_) return StepOutcome::finished;
         if (comparing_) return compare(request);
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        const bool targeted = request.targeted();
         if (!targeted && cubature_->tally().evaluations == 0 && region_is_too_dear(request.max_evaluations)) {
             const StepOutcome outcome = sampling_->step(request);
             if (outcome != StepOutcome::advanced) return outcome;
@@ -109,10 +110,6 @@ class AutoEstimator final : public Estimator {
         const bool open = outcome == StepOutcome::finished && (targeted || !rule.warnings.empty()) &&
                           request.max_evaluations > spent;
         if (spent > 0 && !open) return outcome;
-        if (outcome == StepOutcome::finished && targeted && is_indistinct_from_zero(rule, request)) {
-            reason_ = "the value cannot be distinguished from zero, so no relative error can be met";
-            return outcome;
-        }
         if (outcome == StepOutcome::finished && rule.at_limit) {
             reason_ = "no further evaluations would help";
             return outcome;
@@ -126,7 +123,7 @@ class AutoEstimator final : public Estimator {
     // Sampling goes first; if it takes long, cubature gets a share of the evaluations, since its predicted
     // cost was a guess from its first regions.
     StepOutcome step_both(const StepRequest& request) {
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        const bool targeted = request.targeted();
         const std::uint64_t rules = cubature_->tally().evaluations;
         const std::uint64_t sampled = sampling_->tally().evaluations;
         const bool chance = targeted && !rules_end_;
@@ -150,8 +147,10 @@ class AutoEstimator final : public Estimator {
         }
         // Regions that converge on a singularity may fool both the rules and their check: sampling must have
         // nearly as small an error.
-        const Agreement found =
-            agreement(comparable * request.relative_error, comparable * request.absolute_error);
+        StepRequest nearly = request;
+        nearly.relative_error *= comparable;
+        nearly.absolute_error *= comparable;
+        const Agreement found = agreement(nearly);
         if (found == Agreement::unknown) return sampling_->step(request);
         if (found == Agreement::disagree) {
             rules_end_ = true;
@@ -168,21 +167,19 @@ class AutoEstimator final : public Estimator {
         bool arrived = rule.ready && rule.warnings.empty();
         for (std::size_t c = 0; c < rule.value.size(); ++c)
             arrived = arrived &&
-                      rule.standard_error[c] <=
-                          std::max(request.absolute_error, request.relative_error * std::abs(rule.value[c]));
+                      rule.standard_error[c] <= request.tolerance(c, rule.value[c]);
         return arrived;
     }
 
     enum class Agreement : std::uint8_t { unknown, agree, disagree };
-    // Whether the values of both methods agree; unknown while sampling's error exceeds its targets and a
-    // multiple of cubature's.
-    Agreement agreement(double relative, double absolute) const {
+    // Whether the values of both methods agree; unknown while sampling's error exceeds the request's targets and
+    // a multiple of cubature's.
+    Agreement agreement(const StepRequest& request) const {
         const Tally rule = cubature_->tally(), sampled = sampling_->tally();
         bool agree = true;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
             const double error = sampled.standard_error[c];
-            if (!(error <= std::max({relative * std::abs(rule.value[c]), absolute,
-                                     comparable * rule.standard_error[c]})))
+            if (!(error <= std::max(request.tolerance(c, rule.value[c]), comparable * rule.standard_error[c])))
                 return Agreement::unknown;
             agree = agree && std::abs(rule.value[c] - sampled.value[c]) <=
                                  disagreeing * std::hypot(error, rule.standard_error[c]);
@@ -202,7 +199,10 @@ class AutoEstimator final : public Estimator {
         if (outcome == StepOutcome::cancelled) return outcome;
         const bool over = outcome != StepOutcome::advanced;
         if (!over && !sampling_->tally().ready) return outcome;
-        const Agreement found = agreement(2 * rough.relative_error, 0);
+        StepRequest twice = rough;
+        twice.relative_error *= 2;
+        twice.absolute_error = 0;
+        const Agreement found = agreement(twice);
         agreed_ = found == Agreement::agree;
         if (agreed_) reason_ = "cubature converges, and sampling agrees";
         if (found == Agreement::disagree) {
@@ -270,17 +270,6 @@ class AutoEstimator final : public Estimator {
     }
 
   private:
-    // Cubature has finished and misses only the relative error, because the value is within its error of
-    // zero. Sampling could only meet an absolute error.
-    static bool is_indistinct_from_zero(const Tally& rule, const StepRequest& request) {
-        if (request.absolute_error > 0 || !rule.ready || !rule.warnings.empty()) return false;
-        for (std::size_t c = 0; c < rule.value.size(); ++c) {
-            const double size = std::abs(rule.value[c]), error = rule.standard_error[c];
-            if (error > request.relative_error * size && size > error) return false;
-        }
-        return true;
-    }
-
     static bool has_errors(const Tally& tally) {
         return std::ranges::all_of(tally.standard_error, [](double error) { return std::isfinite(error); });
     }
@@ -299,13 +288,12 @@ class AutoEstimator final : public Estimator {
     // Will cubature reach the target before sampling would?
     void judge(const StepRequest& request, std::uint64_t before) {
         const Tally tally = cubature_->tally();
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        const bool targeted = request.targeted();
         double ratio = 0, tightest = infinity;
         for (std::size_t c = 0; c < tally.value.size(); ++c) {
-            const double size = std::abs(tally.value[c]);
+            const double size = request.size(c, tally.value[c]);
             if (targeted && std::isinf(tally.standard_error[c])) continue; // a part of it is searched for
-            const double tolerance =
-                targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
+            const double tolerance = targeted ? request.tolerance(c, tally.value[c]) : size;
             if (tally.standard_error[c] > 0) ratio = std::max(ratio, tally.standard_error[c] / tolerance);
             if (size > 0) tightest = std::min(tightest, tolerance / size);
         }
@@ -321,7 +309,7 @@ class AutoEstimator final : public Estimator {
         reason_ = "cubature converges";
         if (targeted && ratio <= 1) {
             // A target reached with a warning does not count.
-            if (!tally.warnings.empty()) give_up("cubature warns: " + tally.warnings.front());
+            if (!tally.warnings.empty() && tally.ready) give_up("cubature warns: " + tally.warnings.front());
             comparing_ = !switched_ && tally.ready && tally.localised && !agreed_;
             return;
         }
@@ -329,7 +317,7 @@ class AutoEstimator final : public Estimator {
         const double rate = falling_rate(targeted ? 1 : cautious_rate);
         if (targeted) {
             // Rules are at their best in one variable.
-            const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable() ? 10 : 1);
+            const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable() ? patience_of_one : 1);
             if (spent < std::max(least_pilot, pilot_share * alternative)) return;
             const double needed = spent * std::pow(ratio, 1 / std::max(rate, 0.05));
             if (needed > alternative && one_variable() && tally.non_finite.count + tally.singular > 0 &&

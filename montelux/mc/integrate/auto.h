@@ -15,6 +15,7 @@ namespace montelux {
 // take BasicMonteCarlo. The result's `method` and `reason` contain the choice; naming a method overrules it.
 struct Auto {
     static constexpr std::string_view name = "auto";
+    static constexpr FirstLookUse first_look = FirstLookUse::always;
 
     std::unique_ptr<Estimator> estimator(const Problem& problem) const;
 };

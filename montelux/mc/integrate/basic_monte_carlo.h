@@ -12,6 +12,7 @@ namespace montelux {
 // integrand that is integrable, honest for any that is square-integrable.
 struct BasicMonteCarlo {
     static constexpr std::string_view name = "basic";
+    static constexpr FirstLookUse first_look = FirstLookUse::with_target;
     static constexpr bool on_device = true;
 
     std::unique_ptr<Estimator> estimator(const Problem& problem) const;

@@ -1,9 +1,13 @@
 // Interface of all estimators: steps that add evaluations, a tally at any time, a state that can be saved.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -15,12 +19,19 @@
 namespace montelux {
 
 class UnitDensity;
+struct FirstLook;
+
+// Does a method begin with a first look at the integrand? Methods that draw the same points whatever they see do so
+// only for a target, which they might claim wrongly.
+enum class FirstLookUse : std::uint8_t { never, with_target, always };
 
 // The problem that an estimator solves.
 struct Problem {
     const Evaluator& evaluator; // outlives the estimator
     std::uint64_t seed = 0;
     bool full_covariance = true; // else variances of the components alone
+    // What was seen before the first step; null: nothing. Outlives the estimator.
+    const FirstLook* look = nullptr;
 };
 
 struct StepRequest {
@@ -29,6 +40,18 @@ struct StepRequest {
     // Targets of the step; 0 where there is none.
     double relative_error = 0, absolute_error = 0;
     const CancelFlag* cancel = nullptr;
+    // Sizes that the relative error refers to where they exceed the values: one per component, or none.
+    std::span<const double> sizes = {};
+
+    bool targeted() const { return relative_error > 0 || absolute_error > 0; }
+    // Size of a component of this value that the relative error refers to.
+    double size(std::size_t component, double value) const {
+        return std::max(std::abs(value), component < sizes.size() ? sizes[component] : 0.0);
+    }
+    // Standard error that a component of this value may have.
+    double tolerance(std::size_t component, double value) const {
+        return std::max(absolute_error, relative_error * size(component, value));
+    }
 };
 
 enum class StepOutcome : std::uint8_t {
@@ -42,6 +65,8 @@ enum class StepOutcome : std::uint8_t {
 struct Tally {
     std::vector<double> value, standard_error; // infinite errors while nothing is known
     std::vector<double> covariance;            // components x components, or empty
+    // Integrals of the absolute values, roughly, one per component; empty where the method does not know them.
+    std::vector<double> absolute;
     bool statistical = true;
     std::uint64_t evaluations = 0;       // pilots included
     std::uint64_t check_evaluations = 0; // of these: independent points that check a rule
@@ -59,6 +84,7 @@ struct Tally {
     // The integral is concentrated in too small a part of the domain for random points to check the rule.
     bool localised = false;
     std::vector<std::string> warnings;
+    std::vector<std::string> notes; // what is no warning, but good to know
     std::string method, reason; // filled by estimators that choose among others
 };
 

@@ -94,7 +94,9 @@ void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& no
                            std::vector<std::size_t>* where) const {
     if (domain_.is_unit_cube()) {
         integrand_(u, g);
-        return screen(u, g, non_finite, where);
+        screen(u, g, non_finite, where);
+        if (largest_) largest_->add(u, g);
+        return;
     }
     thread_local PointBuffer x_buffer;
     thread_local std::vector<double> volume_buffer;
@@ -107,6 +109,7 @@ void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& no
     integrand_(x, g);
     scale(g, volume.data());
     screen(x, g, non_finite, where);
+    if (largest_) largest_->add(u, g);
     x_buffer = std::move(x);
     volume_buffer = std::move(volume);
 }

@@ -9,6 +9,7 @@
 
 #include "montelux/mc/integrate/domain.h"
 #include "montelux/mc/integrate/integrand.h"
+#include "montelux/mc/integrate/witness/largest_values.h"
 
 namespace montelux {
 
@@ -40,6 +41,11 @@ class Evaluator {
     const Integrand& integrand() const { return integrand_; }
     NonFinitePolicy policy() const { return policy_; }
 
+    // Largest values of all calls of operator() from now on, where a place for them is given; outlives its use.
+    void keep_largest(LargestValues* largest) { largest_ = largest; }
+    // Those kept so far; none without a place for them.
+    std::vector<Witness> largest() const { return largest_ ? largest_->witnesses() : std::vector<Witness>(); }
+
     // g at points u; values that are not finite become zero and are counted, and the indices of their points
     // added to `where`, if that is given. Scratch memory is the thread's.
     void operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite,
@@ -62,6 +68,7 @@ class Evaluator {
     Integrand integrand_;
     Domain domain_;
     NonFinitePolicy policy_;
+    LargestValues* largest_ = nullptr;
 };
 
 } // namespace montelux

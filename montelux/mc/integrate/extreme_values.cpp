@@ -16,6 +16,7 @@ namespace {
 constexpr double few = 16, few_of_all = 1 / 16.; // values that contribute most of a variance
 constexpr double all_equal = 1e-13;              // deviation over mean: rounding
 constexpr double infinite_variance = 0.5;        // shape from which there is none
+constexpr double heavy_shape = 0.4, heaviest_shape = 0.95; // of tails whose part beyond the largest value counts
 constexpr double shape_errors = 1.5;             // by which the fitted shape must exceed it
 constexpr int least_tail = 50;                   // points that must have been fitted
 constexpr double tail_share = 0.2;               // of the tail in the squared error, to matter
@@ -23,6 +24,13 @@ constexpr double tail_share = 0.2;               // of the tail in the squared e
 } // namespace
 
 double few_values_factor(double k) { return 1 + 1.32 * std::pow(std::max(k, 1.0), -1.5); }
+
+double beyond_the_largest(const ParetoTail& tail, std::uint64_t values, double n) {
+    const std::optional<ParetoFit> fit = tail.fit(values);
+    if (!fit || fit->points < least_tail || !(fit->shape > heavy_shape)) return 0;
+    const double k = std::min(fit->shape, heaviest_shape);
+    return tail.values().front() / n * k / (1 - k);
+}
 
 void warn_of_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, double standard_error,
                         std::vector<std::string>& warnings) {
@@ -51,6 +59,7 @@ void ExtremeValues::add(int component, std::span<const double> values) {
     c.count += values.size();
     c.sum += lane_sum(values.size(), [&](std::size_t i) { return values[i]; });
     c.squares += lane_sum(values.size(), [&](std::size_t i) { return values[i] * values[i]; });
+    c.magnitudes += lane_sum(values.size(), [&](std::size_t i) { return std::abs(values[i]); });
     double least = c.least, greatest = c.greatest;
     for (double v : values) {
         least = std::min(least, v);
@@ -67,6 +76,10 @@ void ExtremeValues::add(const DeviceSummary& values, std::uint64_t count) {
     c.count += count;
     c.sum += values.sum;
     c.squares += values.squares;
+    // Of values of one sign exactly; else a bound, which a device does not sum apart.
+    c.magnitudes += values.least >= 0 || values.greatest <= 0
+                        ? std::abs(values.sum)
+                        : std::sqrt(values.squares * static_cast<double>(count));
     c.least = std::min(c.least, values.least);
     c.greatest = std::max(c.greatest, values.greatest);
 }
@@ -78,6 +91,7 @@ void ExtremeValues::merge(const ExtremeValues& later) {
         c.count += l.count;
         c.sum += l.sum;
         c.squares += l.squares;
+        c.magnitudes += l.magnitudes;
         c.least = std::min(c.least, l.least);
         c.greatest = std::max(c.greatest, l.greatest);
     }
@@ -115,11 +129,15 @@ double ExtremeValues::least_standard_error(int component, std::uint64_t values) 
     return std::sqrt(std::max(k, 1.0)) * largest / n * few_values_factor(k);
 }
 
+double ExtremeValues::mean_magnitude(int component, std::uint64_t values) const {
+    return components_[static_cast<std::size_t>(component)].magnitudes / static_cast<double>(std::max<std::uint64_t>(values, 1));
+}
+
 void ExtremeValues::save(StateWriter& state) const {
     state.put(static_cast<std::uint64_t>(components_.size()));
     for (const Component& c : components_) {
         state.put(c.count);
-        for (double x : {c.least, c.greatest, c.sum, c.squares}) state.put(x);
+        for (double x : {c.least, c.greatest, c.sum, c.squares, c.magnitudes}) state.put(x);
     }
     state.put(tail_.values());
 }
@@ -129,7 +147,7 @@ void ExtremeValues::load(StateReader& state) {
         throw Error("the saved state has another number of components");
     for (Component& c : components_) {
         c.count = state.get_word();
-        for (double* x : {&c.least, &c.greatest, &c.sum, &c.squares}) *x = state.get_double();
+        for (double* x : {&c.least, &c.greatest, &c.sum, &c.squares, &c.magnitudes}) *x = state.get_double();
     }
     tail_.restore(state.get_doubles());
 }

@@ -22,6 +22,10 @@ double few_values_factor(double k);
 // The standard error of a mean of n values that are all equal: half of the rule of three, a bound of 95 %.
 inline double equal_values_error(double value, double n) { return 1.5 * (value < 0 ? -value : value) / n; }
 
+// Part of the mean of n values that lies beyond the largest of them if they follow a tail of a shape from 0.4 on, where
+// the spread of the values no longer tells: w / n k / (1 - k) for the largest w and the shape k; else 0.
+double beyond_the_largest(const ParetoTail& tail, std::uint64_t values, double n);
+
 // Adds a warning if the largest of `values` values follow a tail whose variance is probably infinite and
 // contribute to the standard error of a mean in which each has weight 1 / n.
 void warn_of_heavy_tail(const ParetoTail& tail, std::uint64_t values, double n, double standard_error,
@@ -51,6 +55,8 @@ class ExtremeValues {
     // rare event, misses of a common one) contribute to the variance, or if all are equal; else 0, and 0 if
     // all are zero. Values that were not added count as zeros.
     double least_standard_error(int component, std::uint64_t n) const;
+    // Mean of the magnitudes of n values of a component.
+    double mean_magnitude(int component, std::uint64_t n) const;
 
     void save(StateWriter& state) const;
     // Throws Error where the saved number of components differs.
@@ -59,7 +65,7 @@ class ExtremeValues {
   private:
     struct Component {
         std::uint64_t count = 0;
-        double least, greatest, sum = 0, squares = 0;
+        double least, greatest, sum = 0, squares = 0, magnitudes = 0;
     };
     std::vector<Component> components_;
     ParetoTail tail_;

@@ -87,8 +87,16 @@ class Integrand {
     Integrand with_function(BatchFunction f) const {
         Integrand other(components_, std::move(f));
         other.dimensions_ = dimensions_;
+        other.landmarks_ = landmarks_;
         return other;
     }
+    // The same integrand, which may have features where a coordinate is one of these numbers: those of a formula.
+    Integrand with_landmarks(std::vector<double> landmarks) const {
+        Integrand other = *this;
+        other.landmarks_ = std::move(landmarks);
+        return other;
+    }
+    std::span<const double> landmarks() const { return landmarks_; }
     const OnDevice& on_device() const { return on_device_; }
     // The same integrand, evaluated in this way on a device.
     Integrand with_device(OnDevice device) const {
@@ -114,6 +122,7 @@ class Integrand {
 
     BatchFunction function_;
     OnDevice on_device_{};
+    std::vector<double> landmarks_;
     int dimensions_ = 0;
     int components_;
 };

@@ -79,6 +79,37 @@ void IntegrandScale::apply(std::size_t component, std::span<double> values) {
     }
 }
 
+void IntegrandScale::settle(const ValueBatch& values) {
+    if (settled_.load(std::memory_order_acquire)) return;
+    const std::lock_guard lock(settling_);
+    if (settled_.load(std::memory_order_relaxed)) return;
+    for (int c = 0; c < values.components(); ++c) {
+        double largest = nothing;
+        for (double v : values.component(c)) {
+            const double size = form_ == IntegrandForm::value ? std::abs(v) : v;
+            if (size < std::numeric_limits<double>::infinity()) largest = std::max(largest, size);
+        }
+        if (largest > (form_ == IntegrandForm::value ? 0 : nothing))
+            largest_[static_cast<std::size_t>(c)].store(largest);
+    }
+    const bool seen = std::ranges::any_of(std::span(largest_.get(), exponents_.size()), [&](const auto& l) {
+        return l.load() > (form_ == IntegrandForm::value ? 0 : nothing);
+    });
+    if (!seen) return;
+    adjust();
+    settled_.store(true, std::memory_order_release);
+}
+
+std::vector<double> IntegrandScale::largest() const {
+    std::vector<double> all;
+    for (std::size_t c = 0; c < exponents_.size(); ++c) all.push_back(largest_[c].load());
+    return all;
+}
+
+void IntegrandScale::restore_largest(const std::vector<double>& largest) {
+    for (std::size_t c = 0; c < exponents_.size(); ++c) largest_[c].store(largest[c]);
+}
+
 bool IntegrandScale::adjust() {
     std::vector<double> sizes(exponents_.size(), nothing);
     for (std::size_t c = 0; c < sizes.size(); ++c) {
@@ -111,10 +142,12 @@ void IntegrandScale::load(StateReader& state) {
         throw Error("the saved state has another number of components");
     exponents_ = std::move(exponents);
     for (std::size_t c = 0; c < exponents_.size(); ++c) largest_[c] = state.get_double();
+    settled_ = true;
 }
 
 Integrand scaled(const Integrand& f, IntegrandScale& scale) {
     const auto apply = [&scale](ValueBatch y) {
+        scale.settle(y);
         for (int c = 0; c < y.components(); ++c) scale.apply(static_cast<std::size_t>(c), y.component(c));
     };
     OnDevice device = f.on_device();

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstddef>
 #include <memory>
+#include <mutex>
 #include <vector>
 
 #include "montelux/mc/integrate/integrand.h"
@@ -15,8 +16,8 @@ namespace montelux {
 enum class IntegrandForm : std::uint8_t { value, logarithm };
 
 // Estimators see f_c 2^-k_c with one exponent k_c for each component. Scaling by a power of two is exact, so
-// an estimate does not depend on the unit of f. The exponents follow the largest magnitudes met: `adjust`
-// moves them where squares would overflow or underflow, and the estimate then starts again.
+// an estimate does not depend on the unit of f. The exponents follow the first magnitudes met; `adjust` moves
+// them where squares of later ones would overflow or underflow, and the estimate then starts again.
 class IntegrandScale {
   public:
     // `common`: one exponent serves all components, so that an absolute error has one scaled value. The
@@ -32,6 +33,9 @@ class IntegrandScale {
     double scaled(double x) const;
     // x 2^(k_a + k_b).
     double unscaled_product(double x, std::size_t a, std::size_t b) const;
+    // Largest magnitudes met; given back after looks whose extreme values no estimate contains.
+    std::vector<double> largest() const;
+    void restore_largest(const std::vector<double>& largest);
     // Moves exponents whose components left the safe range. True: the estimate so far is void.
     bool adjust();
 
@@ -41,6 +45,8 @@ class IntegrandScale {
 
   private:
     friend Integrand scaled(const Integrand& f, IntegrandScale& scale);
+    // Chooses the exponents by the first batch that is not all zeros, before any such value was scaled.
+    void settle(const ValueBatch& values);
     void apply(std::size_t component, std::span<double> values);
 
     IntegrandForm form_;
@@ -50,6 +56,8 @@ class IntegrandScale {
     std::vector<double> exponents_; // whole numbers
     // Largest finite |f|, or log f, of each component; from all threads.
     std::unique_ptr<std::atomic<double>[]> largest_;
+    std::atomic<bool> settled_ = false;
+    std::mutex settling_;
 };
 
 // f 2^-k, whose magnitudes `scale` notes. A logarithm of -infinity is an f of zero; +infinity and NaN stay

@@ -10,6 +10,7 @@
 #include <sstream>
 #include <utility>
 
+#include "montelux/mc/integrate/domain_probe.h"
 #include "montelux/mc/integrate/integrand_scale.h"
 #include "montelux/mc/integrate/integrate_log.h"
 #include "montelux/mc/integrate/integration_request.h"
@@ -18,6 +19,7 @@
 #include "montelux/mc/integrate/problem_fingerprint.h"
 #include "montelux/mc/integrate/tally_checks.h"
 #include "montelux/mc/integrate/trained/trained_density.h"
+#include "montelux/mc/integrate/witness/evidence.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
@@ -28,6 +30,15 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t default_evaluations = 1'000'000;
 constexpr std::uint64_t no_limit = ~std::uint64_t{0};
+constexpr std::uint64_t most_of_look = 1024; // evaluations,
+constexpr std::uint64_t share_of_look = 32;   // and one over the largest share of the limit
+constexpr std::uint64_t least_for_look = 512; // smaller limits leave no room for one
+// Evaluations after which the largest values are examined, and the factor of them until the next time.
+constexpr std::uint64_t first_examination = 8192, next_examination = 8;
+constexpr double zero_within = 3; // errors within which a value counts as zero
+// Of a look, before the speed of the integrand is known: seconds of the first calls, and of the method's own work for
+// each evaluation.
+constexpr double first_calls = 1e-4, work_per_evaluation = 3e-7;
 
 std::string point_text(const std::vector<double>& point) {
     std::ostringstream text;
@@ -56,13 +67,16 @@ class Run {
         const Budget& budget, const IntegrationOptions& options)
         : interruption_(options.cancel), f_(interruptible(f, interruption_)),
           scale_(f.components(), form, budget.absolute_error > 0, volume_exponent(domain)),
-          evaluator_(scaled(f_, scale_), domain, options.non_finite), budget_(budget), options_(options),
+          evaluator_(scaled(f_, scale_), domain, options.non_finite), evidence_(evaluator_, options.seed),
+          budget_(budget), options_(options),
           make_estimator_(method), method_(method.name()),
           targeted_(budget.relative_error > 0 || budget.absolute_error > 0) {
         check_request(budget, options);
-        limit_ = budget.evaluations > 0    ? budget.evaluations
-                 : targeted_ || has_time() ? no_limit
-                                           : default_evaluations;
+        limit_ = budget.evaluations > 0                 ? budget.evaluations
+                 : targeted_ || budget.time.count() > 0 ? no_limit
+                                                        : default_evaluations;
+        by_default_ = targeted_ && budget.evaluations == 0 && !(budget.time.count() > 0);
+        if (by_default_) budget_.time = std::chrono::duration<double>(Budget::default_seconds);
         make_estimator();
         start_ = Clock::now(); // a device has compiled the estimator's kernels
     }
@@ -72,12 +86,17 @@ class Run {
     IntegrationResult operator()() {
         if (!options_.checkpoint.empty()) {
             check_generation_writable(options_.checkpoint); // before the work, not after it
+            const bool exists = generation_exists(options_.checkpoint);
+            if (exists && !options_.resume)
+                throw Error(options_.checkpoint,
+                            "exists already; resume from it, or remove it to start again");
             fingerprint_ = problem_fingerprint(f_, evaluator_, method_, options_);
-            if (options_.resume && generation_exists(options_.checkpoint)) restore();
+            if (exists) restore();
         }
         Clock::time_point saved = Clock::now();
         std::optional<StopReason> stop;
-        while (!(stop = reason_to_stop())) {
+        if (estimator_->tally().evaluations == 0 && evidence_.evaluations() == 0) stop = look();
+        while (!stop && !(stop = reason_to_stop())) {
             stop = step();
             if (stop) break;
             if (scale_.adjust()) {
@@ -85,15 +104,16 @@ class Run {
                 continue;
             }
             check_finite();
+            examine();
             record();
-            if (options_.progress) options_.progress(result(StopReason::finished));
+            if (options_.progress) options_.progress(result(std::nullopt));
             if (!options_.checkpoint.empty() && Clock::now() - saved >= options_.checkpoint_every) {
                 save();
                 saved = Clock::now();
             }
         }
         if (!options_.checkpoint.empty()) save();
-        IntegrationResult r = result(*stop);
+        IntegrationResult r = result(stop);
         if (auto unit = estimator_->density())
             r.density = std::make_shared<const TrainedDensity>(std::move(unit), evaluator_.domain());
         return r;
@@ -101,66 +121,126 @@ class Run {
 
   private:
     bool has_time() const { return budget_.time.count() > 0; }
+    // Evaluations besides those of the estimator.
+    std::uint64_t others() const { return lost_ + evidence_.evaluations(); }
 
     void make_estimator() {
-        estimator_ = make_estimator_.estimator({evaluator_, options_.seed, options_.full_covariance});
-        absolute_error_ = budget_.absolute_error > 0 ? scale_.scaled(budget_.absolute_error) : 0;
+        estimator_ = make_estimator_.estimator(
+            {evaluator_, options_.seed, options_.full_covariance, &evidence_.seen()});
+    }
+
+    // The first look, repeated until the scale is that of the values that it sees.
+    std::optional<StopReason> look() {
+        const FirstLookUse use = make_estimator_.first_look();
+        if (use == FirstLookUse::never || (use == FirstLookUse::with_target && !targeted_) || limit_ < least_for_look) {
+            if (budget_.absolute_error > 0) settle_scale();
+            return std::nullopt;
+        }
+        constexpr int most_looks = 4;
+        if (has_time()) interruption_.set_deadline(deadline());
+        try {
+            for (int i = 0; i < most_looks; ++i) {
+                evidence_.look(f_.landmarks(), std::min(most_of_look, limit_ / share_of_look));
+                if (!scale_.adjust()) break;
+            }
+        } catch (const IntegrandInterrupted&) {
+            interruption_.clear_deadline();
+            return interruption_.cancelled() ? StopReason::interrupted : StopReason::time;
+        }
+        interruption_.clear_deadline();
+        const FirstLook& seen = evidence_.seen();
+        if (seen.evaluations > 0)
+            rate_ = 1 / (work_per_evaluation +
+                         std::max(0.0, seen.seconds - first_calls) / static_cast<double>(seen.evaluations));
+        make_estimator();
+        return std::nullopt;
+    }
+
+    // An absolute error is scaled like the values before the first of them is judged by it.
+    void settle_scale() {
+        const DomainProbe probe(evaluator_.domain());
+        ValueBuffer ignored(probe.x.count(), evaluator_.components());
+        evaluator_.integrand()(probe.x, ignored);
+        lost_ += probe.x.count();
     }
 
     // Starts again after a change of scale: sums so far overflowed or underflowed.
     void start_again() {
-        const std::uint64_t made = estimator_->tally().evaluations;
-        lost_ += made;
-        // Too few evaluations left would give no result.
-        if (limit_ != no_limit && limit_ < lost_ + made) {
-            limit_ += made;
-            granted_ += made;
-        }
+        lost_ += estimator_->tally().evaluations;
         history_ = {};
         make_estimator();
+    }
+
+    // Looks at the largest values before a claim, and now and then.
+    void examine() {
+        const Tally tally = estimator_->tally();
+        const bool claims = targeted_ && tally.ready && reached(tally);
+        if (tally.evaluations == 0 || (!claims && tally.evaluations < next_examination_)) return;
+        if (make_estimator_.first_look() == FirstLookUse::never) return;
+        next_examination_ = std::max(next_examination_, next_examination * tally.evaluations);
+        const std::vector<double> largest = scale_.largest();
+        try {
+            const std::uint64_t used = tally.evaluations + others();
+            evidence_.examine(tally, limit_ > used ? limit_ - used : 0);
+        } catch (const IntegrandInterrupted&) { // the run ends
+        }
+        scale_.restore_largest(largest);
     }
 
     std::optional<StopReason> reason_to_stop() const {
         const Tally tally = estimator_->tally();
         // Nothing is known without evaluations.
         if (tally.evaluations > 0) {
+            if (!evidence_.divergence().empty()) return StopReason::diverges;
             if (targeted_ && tally.ready && reached(tally))
-                return nothing_found(tally) ? StopReason::finished : StopReason::error_target;
+                return nothing_found(tally) || !reached(judged(tally)) ? StopReason::finished
+                                                                       : StopReason::error_target;
             if (targeted_ && tally.ready && is_rounding(tally)) return StopReason::finished;
-            if (tally.evaluations + lost_ >= limit_) return StopReason::evaluations;
+            if (tally.evaluations + others() >= limit_ ||
+                (by_default_ && tally.evaluations + others() >= Budget::default_most_evaluations))
+                return StopReason::evaluations;
             if (has_time() && elapsed() >= budget_.time.count()) return StopReason::time;
         }
-        if (interruption_.cancelled()) return StopReason::cancelled;
+        if (interruption_.cancelled()) return StopReason::interrupted;
         return std::nullopt;
     }
 
     // One step of the estimator; the reason to stop where it did not advance.
     std::optional<StopReason> step() {
-        const std::uint64_t done = estimator_->tally().evaluations;
-        StepRequest request{limit_ - done - lost_, budget_.relative_error, absolute_error_, options_.cancel};
+        const Tally tally = estimator_->tally();
+        const std::uint64_t done = tally.evaluations, used = done + others();
+        sizes_ = sizes(tally);
+        StepRequest request = target();
+        request.max_evaluations = limit_ > used ? limit_ - used : 0;
         if (!has_time()) return outcome_of(attempt(request), false);
 
+        // Methods plan for the evaluations that fit into the time, with the speed so far; by default only at the end,
+        // so that the time makes no difference before.
         const double remaining = budget_.time.count() - elapsed();
-        if (done > 0) {
-            // The last step must fit into the remaining time, or it is lost.
-            const double fits = std::max(1.0, 0.95 * rate_ * std::max(remaining, 0.0));
-            const bool shortened = rate_ > 0 && fits < static_cast<double>(request.max_evaluations);
-            if (shortened) request.max_evaluations = static_cast<std::uint64_t>(fits);
-            return timed(request, deadline(), shortened);
-        }
+        const std::uint64_t most = request.max_evaluations;
+        const double fits = std::max(1.0, 0.95 * rate_ * std::max(remaining, 0.0));
+        const bool plans = !by_default_ || fits < static_cast<double>(done);
+        const bool shortened = plans && rate_ > 0 && fits < static_cast<double>(most);
+        if (shortened) request.max_evaluations = static_cast<std::uint64_t>(fits);
+        if (done > 0) return timed(request, deadline(), shortened);
         // The first step's duration is unknown. If half of the time is not enough for it, the evaluations
         // made so far say how many fit into the other half, on one thread at least.
         if (remaining <= 0) return StopReason::time;
         const std::uint64_t before = interruption_.evaluations();
         const auto half = Clock::now() + std::chrono::duration_cast<Clock::duration>(
                                              std::chrono::duration<double>(0.5 * remaining));
-        std::optional<StopReason> stop = timed(request, half, false);
+        std::optional<StopReason> stop = timed(request, half, shortened);
+        if (stop == StopReason::time && shortened && interruption_.evaluations() == before) {
+            // The first step takes more than the plan allows: tried all the same.
+            request.max_evaluations = most;
+            stop = timed(request, half, false);
+        }
         if (stop != StopReason::time) return stop;
         const std::uint64_t made = interruption_.evaluations() - before;
         if (made >= request.max_evaluations) return stop;
         lost_ += made;
-        const double fits = 0.8 * static_cast<double>(made) / thread_count();
-        request.max_evaluations = std::min(request.max_evaluations - made, static_cast<std::uint64_t>(fits));
+        const double fit = 0.8 * static_cast<double>(made) / thread_count();
+        request.max_evaluations = std::min(request.max_evaluations - made, static_cast<std::uint64_t>(fit));
         if (request.max_evaluations == 0) return stop;
         return timed(request, deadline(), true);
     }
@@ -184,14 +264,14 @@ class Run {
         case StepOutcome::advanced:
             return std::nullopt;
         case StepOutcome::cancelled:
-            return StopReason::cancelled;
+            return StopReason::interrupted;
         case StepOutcome::finished:
             return StopReason::finished;
         case StepOutcome::exhausted:
             break;
         }
         if (shortened) return StopReason::time;
-        if (estimator_->tally().evaluations == 0)
+        if (estimator_->tally().evaluations == 0 && lost_ == 0)
             throw Error("integrate", "the method '" + method_ + "' takes more than " +
                                          std::to_string(limit_) + " evaluations for its first step in " +
                                          std::to_string(evaluator_.dimensions()) +
@@ -228,7 +308,52 @@ class Run {
 
     bool reached(const Tally& tally) const {
         if (nothing_found(tally) && tally.evaluations < default_evaluations) return false;
-        return meets(tally, budget_.relative_error, absolute_error_);
+        const std::vector<double> own = sizes(tally);
+        StepRequest request = target();
+        request.sizes = own;
+        return meets(tally, request);
+    }
+
+    StepRequest target() const {
+        StepRequest request;
+        request.relative_error = budget_.relative_error;
+        request.absolute_error = budget_.absolute_error > 0 ? scale_.scaled(budget_.absolute_error) : 0;
+        request.cancel = options_.cancel;
+        request.sizes = sizes_;
+        return request;
+    }
+
+    // What a relative error refers to besides the values: their norm; or, of values that are zero within their errors,
+    // the integrals of the absolute values. Where a method does not know these, its error as of independent samples
+    // tells a size that they exceed.
+    std::vector<double> sizes(const Tally& tally) const {
+        std::vector<double> all(tally.value.size(), 0.0);
+        if (!(budget_.relative_error > 0) || tally.evaluations == 0) return {};
+        if (budget_.norm == ErrorNorm::vector) {
+            double squares = 0;
+            for (double v : tally.value) squares += v * v;
+            std::ranges::fill(all, std::sqrt(squares));
+            return all;
+        }
+        for (std::size_t c = 0; c < all.size(); ++c) {
+            const double error = tally.standard_error[c];
+            if (!std::isfinite(error) || std::abs(tally.value[c]) > zero_within * error) continue;
+            all[c] = !tally.absolute.empty() ? tally.absolute[c]
+                     : tally.statistical    ? error * std::sqrt(static_cast<double>(tally.evaluations))
+                                            : 0;
+        }
+        return all;
+    }
+
+    // A tally beside the evidence of the run.
+    Tally judged(Tally tally) const {
+        if (make_estimator_.first_look() == FirstLookUse::never || tally.evaluations == 0) return tally;
+        const std::vector<double> own = sizes(tally);
+        StepRequest request = target();
+        request.sizes = own;
+        const std::shared_ptr<const UnitDensity> density = estimator_->density();
+        evidence_.judge(density.get(), request, tally);
+        return tally;
     }
 
     // In the unit of f; of logarithms, relative to 2^exponent().
@@ -239,15 +364,17 @@ class Run {
     void record() {
         const Tally tally = estimator_->tally();
         if (tally.value.empty()) return;
-        history_.add({tally.evaluations + lost_, in_unit(tally.value.at(0), 0),
+        history_.add({tally.evaluations + others(), in_unit(tally.value.at(0), 0),
                       in_unit(tally.standard_error.at(0), 0), elapsed()});
     }
 
-    IntegrationResult result(StopReason stop) const {
-        Tally tally = estimator_->tally();
+    IntegrationResult result(std::optional<StopReason> ended) const {
+        const StopReason stop = ended.value_or(StopReason::finished);
+        Tally tally = ended ? judged(estimator_->tally()) : estimator_->tally();
         const bool unchecked = targeted_ && !tally.statistical && !tally.ready && tally.warnings.empty();
         const bool only_zeros = nothing_found(tally);
         const bool rounding = (tally.at_limit && tally.warnings.empty()) || is_rounding(tally);
+        const std::vector<double> values = tally.value, errors = tally.standard_error; // scaled
         IntegrationResult r;
         r.value = std::move(tally.value);
         r.standard_error = std::move(tally.standard_error);
@@ -261,7 +388,7 @@ class Run {
                 r.covariance[i] =
                     scale_.unscaled_product(r.covariance[i], i / r.value.size(), i % r.value.size());
         r.statistical = tally.statistical;
-        r.evaluations = tally.evaluations + lost_;
+        r.evaluations = tally.evaluations + others();
         r.non_finite = tally.non_finite.count;
         r.first_non_finite_point = std::move(tally.non_finite.first_point);
         r.history = history_.records();
@@ -275,6 +402,8 @@ class Run {
         r.reason = std::move(tally.reason);
         r.stop = stop;
         r.warnings = std::move(tally.warnings);
+        r.notes = std::move(tally.notes);
+        add_notes(values, errors, r);
         if (only_zeros) {
             if (r.warnings.empty())
                 r.warnings.push_back("a value was zero at every point; a narrow peak may have been missed");
@@ -298,9 +427,31 @@ class Run {
             r.warnings.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
                                  " values of the integrand were not finite and were left out, the first at " +
                                  point_text(r.first_non_finite_point));
+        if (stop == StopReason::diverges) {
+            r.warnings = {"the integral diverges, or converges too slowly to tell: " + evidence_.divergence()};
+            std::ranges::fill(r.standard_error, std::numeric_limits<double>::infinity());
+            std::ranges::fill(r.covariance, std::numeric_limits<double>::infinity());
+        }
         r.checkpoint_refused_because = checkpoint_refused_because_;
         r.seconds = elapsed();
         return r;
+    }
+
+    void add_notes(const std::vector<double>& values, const std::vector<double>& errors, IntegrationResult& r) const {
+        if (by_default_ && (r.stop == StopReason::time || r.stop == StopReason::evaluations)) {
+            std::ostringstream text;
+            text << "stopped at the default limit of "
+                 << (r.stop == StopReason::time ? Budget::default_seconds : double(Budget::default_most_evaluations))
+                 << (r.stop == StopReason::time ? " s" : " evaluations") << "; give a time or evaluations for another";
+            r.notes.push_back(text.str());
+        }
+        if (r.stop != StopReason::error_target || budget_.norm == ErrorNorm::vector) return;
+        StepRequest alone = target();
+        alone.sizes = {};
+        for (std::size_t c = 0; c < r.value.size(); ++c)
+            if (errors[c] > alone.tolerance(c, values[c]))
+                r.notes.push_back((r.value.size() > 1 ? "component " + std::to_string(c + 1) : "the value") +
+                                  " is zero within its error, whose target was measured against the integral of |f|");
     }
 
     void save() const {
@@ -308,8 +459,9 @@ class Run {
         state.put(fingerprint_);
         state.put(elapsed());
         state.put(lost_);
-        state.put(granted_);
+        state.put(next_examination_);
         scale_.save(state);
+        evidence_.save(state);
         history_.save(state);
         estimator_->save(state);
         write_state(options_.checkpoint, "integration", state);
@@ -323,9 +475,9 @@ class Run {
             throw Error(options_.checkpoint, "belongs to another integrand, domain, method or seed");
         seconds_before_ = state.get_double();
         lost_ = state.get_word();
-        granted_ = state.get_word();
-        if (limit_ != no_limit) limit_ += granted_;
+        next_examination_ = state.get_word();
         scale_.load(state);
+        evidence_.load(state);
         make_estimator();
         history_.load(state);
         try {
@@ -340,16 +492,18 @@ class Run {
     Integrand f_;
     IntegrandScale scale_;
     Evaluator evaluator_;
+    Evidence evidence_;
     Budget budget_;
-    double absolute_error_ = 0; // in the unit of the scaled integrand
     const IntegrationOptions& options_;
     Method make_estimator_;
     std::string method_;
     bool targeted_;
     std::uint64_t limit_ = 0;
-    std::uint64_t granted_ = 0; // share of the limit for repetitions after a change of scale
-    std::uint64_t lost_ = 0;    // evaluations of discarded steps (time or scale)
-    double rate_ = 0;           // evaluations per second in the last step
+    bool by_default_ = false;                           // the limits are the default ones
+    std::vector<double> sizes_;                         // of the request of the last step
+    std::uint64_t lost_ = 0;                            // evaluations of discarded steps (time or scale)
+    std::uint64_t next_examination_ = first_examination; // evaluations of the estimator
+    double rate_ = 0;                                   // evaluations per second in the last step
     std::uint64_t fingerprint_ = 0;
     std::string checkpoint_refused_because_;
     std::unique_ptr<Estimator> estimator_;

@@ -15,18 +15,26 @@
 
 namespace montelux {
 
-// Limits of a run, of which the first reached ends it, and settings common to all methods.
+// What a relative error is relative to: each component's value, or the Euclidean norm of all values.
+enum class ErrorNorm : std::uint8_t { component, vector };
+
+// Limits of a run, of which the first reached ends it.
 struct Budget {
+    // Limits of a run with a target error but neither evaluations nor a time.
+    static constexpr double default_seconds = 60;
+    static constexpr std::uint64_t default_most_evaluations = 1'000'000'000;
+
     // Each component stops at whichever of the two errors is larger; zero means none. The errors are one
-    // standard deviation.
+    // standard deviation. A component whose value is zero within three errors is measured against the integral of
+    // its absolute values; `notes` of the result say so.
     double relative_error = 0, absolute_error = 0;
-    // 0: no limit if there is a target error or a time, else one million. Steps whose values are so far from
-    // 1 (beyond 1e-60 or 1e138) that squares lose digits are repeated at another scale, even beyond the
-    // limit.
+    // At most so many. 0: no limit if there is a time, the default limits if there is a target error, else one
+    // million.
     std::uint64_t evaluations = 0;
-    // Wall time, including earlier parts of a resumed run; 0: no limit. The last steps are shortened to fit;
-    // a step that does not finish in time is discarded.
+    // Wall time, including earlier parts of a resumed run; 0: no limit. Methods plan for the evaluations that fit
+    // into it; a step that does not finish in time is discarded.
     std::chrono::duration<double> time{0};
+    ErrorNorm norm = ErrorNorm::component;
 };
 
 struct IntegrationOptions {
@@ -36,21 +44,25 @@ struct IntegrationOptions {
     NonFinitePolicy non_finite = NonFinitePolicy::skip;
     // Covariances of the components; without them memory grows linearly with their number.
     bool full_covariance = true;
-    // Called between steps, from the thread that called integrate().
+    // Called between steps, from the thread that called integrate(). To end the run with its result so far,
+    // request `cancel`.
     std::function<void(const IntegrationResult&)> progress = {};
     const CancelFlag* cancel = nullptr;
-    // File of the running state, written every `checkpoint_every` and at the end; an existing file becomes
-    // CHECKPOINT.previous. With `resume` the run continues from it if it exists, or from the previous one if
-    // it is damaged. Empty: none. Four extra evaluations of the integrand detect a different integrand.
+    // File of the running state, written every `checkpoint_every` and at the end. With `resume` the run continues
+    // from it if it exists, or from CHECKPOINT.previous if it is damaged; without, an existing file is an Error.
+    // Empty: none. Four extra evaluations of the integrand detect a different integrand.
     std::string checkpoint = {};
     std::chrono::duration<double> checkpoint_every{60};
     bool resume = false;
 };
 
-// The integral of f over the domain. With relative error 0 and absolute error 0 the evaluations or the time
-// must be limited (default: one million evaluations). Throws Error for arguments that make no sense, for a
+// The integral of f over the domain. Every run ends: by its limits, or by the default ones. Throws Error for arguments that make no sense, for a
 // method that cannot do the problem, for an integrand that is nowhere finite, and for files that cannot be
 // written; rethrows what f throws.
+//
+// Most methods begin with a first look at the integrand by scales (FirstLook), whose evaluations count. A result
+// is claimed only if it explains the largest values that the run has seen. Where the mass of |f| does not fall
+// towards a point or infinity, the run stops as `diverges`.
 //
 // A target does not count while all values are zero, up to a million evaluations. Cancelling and the time
 // limit take effect between evaluations of f and discard the current step, so a run that ends before its

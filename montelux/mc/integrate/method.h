@@ -28,7 +28,7 @@ class Method {
     template <typename S>
     requires(!std::same_as<S, Method> && MethodSettings<S>) // not the copy constructor
         Method(S settings)
-        : name_(S::name), on_device_(draws_on_device<S>()),
+        : name_(S::name), on_device_(draws_on_device<S>()), first_look_(look_of<S>()),
           make_([settings](const Problem& problem) { return settings.estimator(problem); }) {}
 
     // A method by name with its default settings; throws Error that lists the names.
@@ -41,6 +41,7 @@ class Method {
     const std::string& name() const { return name_; }
     // Can its points be drawn on a device?
     bool on_device() const { return on_device_; }
+    FirstLookUse first_look() const { return first_look_; }
     // Throws Error where the integrand is on a device and the method does not run there.
     std::unique_ptr<Estimator> estimator(const Problem& problem) const;
 
@@ -53,8 +54,17 @@ class Method {
             return false;
     }
 
+    template <typename S>
+    static constexpr FirstLookUse look_of() {
+        if constexpr (requires { S::first_look; })
+            return S::first_look;
+        else
+            return FirstLookUse::never;
+    }
+
     std::string name_;
     bool on_device_ = false;
+    FirstLookUse first_look_ = FirstLookUse::never;
     std::function<std::unique_ptr<Estimator>(const Problem&)> make_;
 };
 

@@ -7,8 +7,8 @@
 namespace montelux {
 
 std::string_view to_string(StopReason reason) {
-    static constexpr std::array<std::string_view, 5> names{"error_target", "evaluations", "time", "cancelled",
-                                                           "finished"};
+    static constexpr std::array<std::string_view, 6> names{
+        "error_target", "evaluations", "time", "interrupted", "diverges", "finished"};
     return names[static_cast<std::size_t>(reason)];
 }
 
@@ -36,8 +36,11 @@ std::string to_string(const IntegrationResult& result) {
     case StopReason::time:
         text += ", stopped by time";
         break;
-    case StopReason::cancelled:
-        text += ", cancelled";
+    case StopReason::interrupted:
+        text += ", interrupted";
+        break;
+    case StopReason::diverges:
+        text += ", stopped: no integral was found";
         break;
     case StopReason::finished:
         text += ", finished";
@@ -49,6 +52,7 @@ std::string to_string(const IntegrationResult& result) {
                       result.chi_squared_per_degree(), result.p_value);
         text += buffer.data();
     }
+    for (const std::string& note : result.notes) text += "\nnote: " + note;
     for (const std::string& warning : result.warnings) text += "\nwarning: " + warning;
     return text;
 }

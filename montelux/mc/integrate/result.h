@@ -18,8 +18,9 @@ enum class StopReason : std::uint8_t {
     error_target, // each component reached its absolute or relative error
     evaluations,  // the next step would exceed the number of evaluations allowed
     time,
-    cancelled,
-    finished, // the method has nothing further to do (a fixed grid)
+    interrupted, // by IntegrationOptions::cancel
+    diverges,    // the integral does not exist, or converges too slowly to tell
+    finished,    // the method has nothing further to do (a fixed grid)
 };
 // "error_target", ...
 std::string_view to_string(StopReason reason);
@@ -57,6 +58,8 @@ struct IntegrationResult {
     StopReason stop = StopReason::finished;
     // Reasons why the value or its error may be wrong, as sentences. Normally empty.
     std::vector<std::string> warnings;
+    // How the result was judged where that is not obvious, as sentences.
+    std::vector<std::string> notes;
     // Why the newest checkpoint could not be resumed and the previous one was; else empty.
     std::string checkpoint_refused_because;
     double seconds = 0; // wall time
@@ -73,7 +76,7 @@ struct IntegrationResult {
     }
 };
 
-// One line per component, as 1.2345(67); then evaluations, method, the reason to stop, and each warning.
+// One line per component, as 1.2345(67); then evaluations, method, the reason to stop, notes and warnings.
 std::string to_string(const IntegrationResult& result);
 std::ostream& operator<<(std::ostream& out, const IntegrationResult& result);
 

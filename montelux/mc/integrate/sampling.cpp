@@ -69,6 +69,13 @@ void judge_extremes(const ExtremeValues& extremes, std::uint64_t n, Tally& tally
     if (n < 2 || extremes.components() == 0) return;
     raise_errors_of_few(extremes, n, tally);
     warn_of_heavy_tail(extremes.tail(), n, static_cast<double>(n), tally.standard_error[0], tally.warnings);
+    const double beyond = beyond_the_largest(extremes.tail(), n, static_cast<double>(n));
+    if (beyond > 0) {
+        const std::array<double, 1> least{std::hypot(tally.standard_error[0], beyond)};
+        raise_standard_errors(least, tally);
+    }
+    tally.absolute.clear();
+    for (int c = 0; c < extremes.components(); ++c) tally.absolute.push_back(extremes.mean_magnitude(c, n));
 }
 
 void raise_standard_errors(std::span<const double> least, Tally& tally) {

@@ -7,10 +7,9 @@
 
 namespace montelux {
 
-bool meets(const Tally& tally, double relative, double absolute) {
+bool meets(const Tally& tally, const StepRequest& request) {
     for (std::size_t c = 0; c < tally.value.size(); ++c)
-        if (!(tally.standard_error[c] <= std::max(absolute, relative * std::abs(tally.value[c]))))
-            return false;
+        if (!(tally.standard_error[c] <= request.tolerance(c, tally.value[c]))) return false;
     return true;
 }
 

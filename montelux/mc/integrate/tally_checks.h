@@ -5,9 +5,8 @@
 
 namespace montelux {
 
-// The error of each component is at most `absolute`, or at most `relative` times its value; 0 of both is met
-// by an error of zero alone. `absolute` is in the unit of the tally.
-bool meets(const Tally& tally, double relative, double absolute);
+// The error of each component is within the tolerance of the request; without a target an error of zero alone is.
+bool meets(const Tally& tally, const StepRequest& request);
 // A value and its error are zero: either the function is zero, or no point has hit its peaks.
 bool nothing_found(const Tally& tally);
 // All errors are below the resolution of doubles.

@@ -45,7 +45,7 @@ TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUninterruptedOne) {
             if (r.evaluations >= stop_at) cancel.request();
         };
         const IntegrationResult part = integrate(f, Domain::unit_cube(2), basic, budget, options);
-        EXPECT_EQ(part.stop, StopReason::cancelled);
+        EXPECT_EQ(part.stop, StopReason::interrupted);
         EXPECT_LT(part.evaluations, budget.evaluations);
         const IntegrationResult rest =
             integrate(f, Domain::unit_cube(2), basic, budget,
@@ -83,7 +83,7 @@ TEST(IntegrateCheckpoint, EveryMethodResumesToTheSameBits) {
             const IntegrationResult part =
                 integrate(f, Domain::unit_cube(2), method, budget,
                           {.seed = 4, .cancel = &cancel, .checkpoint = file.path()});
-            if (part.stop != StopReason::cancelled) continue; // had done all it wanted
+            if (part.stop != StopReason::interrupted) continue; // had done all it wanted
             const IntegrationResult rest = integrate(peak, Domain::unit_cube(2), method, budget,
                                                      {.seed = 4, .checkpoint = file.path(), .resume = true});
             EXPECT_TRUE(same_but_for_time(rest, uninterrupted)) << name << " stopped at " << stop_at;

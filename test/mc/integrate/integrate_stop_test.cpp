@@ -123,12 +123,12 @@ TEST(IntegrateStop, CancelFromAnotherThread) {
             });
             r = integrate(f, Domain::interval(0, 1), basic, {.relative_error = 1e-9}, {.cancel = &cancel});
         });
-        EXPECT_EQ(r.stop, StopReason::cancelled);
+        EXPECT_EQ(r.stop, StopReason::interrupted);
         EXPECT_LE(seconds, 0.6);
         if (milliseconds == 0) {
             EXPECT_GT(r.evaluations, 0u);
         } else { // ended within its first step
-            EXPECT_EQ(r.evaluations, 0u);
+            EXPECT_LE(r.evaluations, 24u); // the first look
             EXPECT_TRUE(std::isinf(r.standard_error.at(0)));
         }
     }
@@ -146,7 +146,7 @@ TEST(IntegrateStop, CancelFromProgress) {
     };
     const IntegrationResult r = integrate([](double x) { return x; }, Domain::interval(0, 1), basic,
                                           {.relative_error = 1e-9}, options);
-    EXPECT_EQ(r.stop, StopReason::cancelled);
+    EXPECT_EQ(r.stop, StopReason::interrupted);
     EXPECT_EQ(r.evaluations, seen);
 }
 

@@ -17,16 +17,34 @@ Tally tally(std::vector<double> value, std::vector<double> error) {
     return t;
 }
 
+StepRequest target(double relative, double absolute) {
+    StepRequest request;
+    request.relative_error = relative;
+    request.absolute_error = absolute;
+    return request;
+}
+
 TEST(TallyChecks, EveryComponentMeetsTheLargerOfTheTwoErrors) {
     const Tally t = tally({10, -100}, {0.1, 1});
-    EXPECT_TRUE(meets(t, 0.01, 0));
-    EXPECT_FALSE(meets(t, 0.0099, 0));
-    EXPECT_TRUE(meets(t, 0, 1));
-    EXPECT_FALSE(meets(t, 0, 0.99)); // the second
-    EXPECT_TRUE(meets(t, 0.01, 0.05));
-    EXPECT_FALSE(meets(t, 0, 0));
-    EXPECT_TRUE(meets(tally({0}, {0}), 0, 0));
-    EXPECT_FALSE(meets(tally({1}, {std::numeric_limits<double>::quiet_NaN()}), 1, 1));
+    EXPECT_TRUE(meets(t, target(0.01, 0)));
+    EXPECT_FALSE(meets(t, target(0.0099, 0)));
+    EXPECT_TRUE(meets(t, target(0, 1)));
+    EXPECT_FALSE(meets(t, target(0, 0.99))); // the second
+    EXPECT_TRUE(meets(t, target(0.01, 0.05)));
+    EXPECT_FALSE(meets(t, target(0, 0)));
+    EXPECT_TRUE(meets(tally({0}, {0}), target(0, 0)));
+    EXPECT_FALSE(meets(tally({1}, {std::numeric_limits<double>::quiet_NaN()}), target(1, 1)));
+}
+
+TEST(TallyChecks, SizesTakeThePlaceOfSmallerValues) {
+    const Tally t = tally({0, 10}, {0.1, 0.1});
+    StepRequest request = target(0.01, 0);
+    EXPECT_FALSE(meets(t, request));
+    const std::vector<double> sizes{10, 1};
+    request.sizes = sizes;
+    EXPECT_TRUE(meets(t, request));
+    EXPECT_DOUBLE_EQ(request.tolerance(0, 0), 0.1);
+    EXPECT_DOUBLE_EQ(request.tolerance(1, 10), 0.1);
 }
 
 TEST(TallyChecks, NothingIsFoundWhereAValueAndItsErrorAreZero) {

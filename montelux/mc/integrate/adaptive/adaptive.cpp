@@ -1,8 +1,10 @@
 #include "montelux/mc/integrate/adaptive/adaptive.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
@@ -11,6 +13,7 @@
 #include "montelux/mc/integrate/adaptive/mixture_estimate.h"
 #include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/math/special.h"
+#include "montelux/mc/integrate/witness/first_look.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/random/sobol.h"
 
@@ -44,11 +47,10 @@ constexpr double even_values = 0.7;          // effective share of exploring poi
 constexpr std::uint64_t most_kept = 1 << 18; // uniform points of a step that are kept for training
 constexpr double surprise_matters = 2;       // error over target from which heavy weights matter
 constexpr double much_sooner = 0.5;      // share of the expected rest below which uniform points are resumed
+constexpr double negligible_peak = 1e-4; // of the integral of |g|
 constexpr std::uint64_t early_check = 4; // first samples after which a density is checked
 constexpr std::uint64_t step_points = 65536; // of each replicate in one step
 constexpr std::uint64_t smallest_budget = 4; // rounds that must be affordable for training to begin
-
-bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
 
 class AdaptiveEstimator final : public Estimator {
   public:
@@ -75,9 +77,11 @@ class AdaptiveEstimator final : public Estimator {
         case Phase::train:
             return train(request);
         case Phase::weighted:
+            if (has_new_peaks()) return consider_peaks();
             if (check_.due(trainer_, weighted_, request, early_check * first_sample())) return check(request);
             return sample(request, trainer_.density(), 2, weighted_);
         default:
+            if (has_new_peaks()) return consider_peaks();
             return sample(request, cube_, 0, uniform_);
         }
     }
@@ -92,7 +96,7 @@ class AdaptiveEstimator final : public Estimator {
         tally.non_finite.merge(uniform_.sums().non_finite);
         tally.non_finite.merge(weighted_.sums().non_finite);
         tally.non_finite.merge(abandoned_non_finite_);
-        tally.ready = estimate.compared() && (phase_ == Phase::uniform || weighted) &&
+        tally.ready = !has_new_peaks() && estimate.compared() && (phase_ == Phase::uniform || weighted) &&
                       (weighted || !plateau() || uniform_.evaluations() >= plateau_evaluations) &&
                       (!weighted || check_.covers(trainer_, weighted_.points()));
         if (estimate.points() == 0) return tally;
@@ -126,6 +130,7 @@ class AdaptiveEstimator final : public Estimator {
         state.put(round_points_);
         state.put(training_goal_);
         state.put(retrained_);
+        state.put(known_peaks_);
         check_.save(state);
         state.put(abandoned_evaluations_);
         montelux::save(state, abandoned_non_finite_);
@@ -140,6 +145,7 @@ class AdaptiveEstimator final : public Estimator {
         round_points_ = state.get_word();
         training_goal_ = state.get_double();
         retrained_ = state.get<int>();
+        known_peaks_ = state.get_word();
         check_.load(state);
         abandoned_evaluations_ = state.get_word();
         montelux::load(state, abandoned_non_finite_);
@@ -159,7 +165,7 @@ class AdaptiveEstimator final : public Estimator {
 
     // Points of each replicate: an eighth of a small fixed number of evaluations.
     std::uint64_t exploration(const StepRequest& request) const {
-        if (targeted(request)) return explored_;
+        if (request.targeted()) return explored_;
         const std::uint64_t eighth =
             std::bit_floor(std::max<std::uint64_t>(request.max_evaluations / (8 * replicates()), 1));
         return std::clamp(eighth, std::min(least_explored, explored_), explored_);
@@ -185,13 +191,34 @@ class AdaptiveEstimator final : public Estimator {
         trainer_.start(std::move(drawn));
         const std::uint64_t left = request.max_evaluations - sums->evaluations;
         const bool room = uniform_.points() >= explored_ && left >= smallest_budget * round_points_;
-        if (!room || uniform_will_do(request))
+        if (room && misses_a_peak(cube_, uniform_)) {
+            known_peaks_ = problem_.look->peaks.size();
+            phase_ = Phase::search;
+        } else if (!room || uniform_will_do(request))
             phase_ = Phase::uniform;
         else if (trainer_.nonzero() >= enough_nonzero ||
                  (trainer_.nonzero() >= few_nonzero && 3 * uniform_.evaluations() >= left) ||
                  uniform_.evaluations() >= most_exploration)
             phase_ = trainer_.nonzero() == 0 ? Phase::uniform : first_training();
         return StepOutcome::advanced;
+    }
+    // Was a peak seen that points of this density do not explain?
+    bool misses_a_peak(const MixtureDensity& density, const MixtureEstimate& estimate) const {
+        if (!problem_.look || problem_.look->peaks.empty() || estimate.points() == 0) return false;
+        Tally tally;
+        estimate.tally(false, tally);
+        PointBuffer at(1, density.dimensions());
+        for (const Witness& peak : problem_.look->peaks) {
+            for (int d = 0; d < density.dimensions(); ++d) at(0, d) = peak.u[static_cast<std::size_t>(d)];
+            std::array<double, 1> q{1};
+            density.pdf(at, q);
+            for (std::size_t c = 0; c < tally.value.size(); ++c) {
+                const double mass = unexplained(peak.value[c], peak.volume, q[0],
+                                                static_cast<double>(estimate.all_points()), tally.absolute[c]);
+                if (mass > negligible_peak * std::max(tally.absolute[c], std::abs(tally.standard_error[c]))) return true;
+            }
+        }
+        return false;
     }
     // Points of each replicate for the first trial of the trained density: half of the exploration.
     std::uint64_t first_sample() const {
@@ -206,12 +233,26 @@ class AdaptiveEstimator final : public Estimator {
 
     // Are uniform points expected to converge soon? Their error falls faster than 1 / n for what is smooth.
     bool uniform_will_do(const StepRequest& request) const {
-        if (!targeted(request) || trainer_.effective_share() < trusted_exploration) return false;
+        if (!request.targeted() || trainer_.effective_share() < trusted_exploration) return false;
         const bool even = trainer_.effective_share() > flat;
         const double expected =
             even ? uniform_.expected_rest(request) + static_cast<double>(uniform_.evaluations())
                  : static_cast<double>(uniform_.evaluations()) * std::max(1.0, uniform_.error_ratio(request));
         return expected <= (even ? uniform_reach : uniform_reach / 4);
+    }
+
+    // Were peaks found since the last search for them?
+    bool has_new_peaks() const {
+        return problem_.look && problem_.look->peaks.size() != known_peaks_ && retrained_ < max_retrainings;
+    }
+    // Searches again where the points so far do not explain them.
+    StepOutcome consider_peaks() {
+        known_peaks_ = problem_.look->peaks.size();
+        if (phase_ == Phase::weighted ? misses_a_peak(trainer_.density(), weighted_) : misses_a_peak(cube_, uniform_)) {
+            retrain(2 * static_cast<double>(trainer_.evaluations()));
+            phase_ = Phase::search;
+        }
+        return StepOutcome::advanced;
     }
 
     StepOutcome search(const StepRequest& request) {
@@ -238,13 +279,13 @@ class AdaptiveEstimator final : public Estimator {
         // A share of the allowed evaluations, larger if these are few; or of the expected cost of the target
         // with this density and the usual gain of Sobol' points.
         const double all = static_cast<double>(request.max_evaluations) + trained;
-        const double most = !targeted(request) && all >= enough_for_half ? all / 2 : all / 3;
+        const double most = !request.targeted() && all >= enough_for_half ? all / 2 : all / 3;
         double allowed = std::max(fixed_training_share * all, std::min(most, least_training));
         if (request.relative_error > 0)
             allowed = std::min(allowed, settings_.training_share *
                                             std::pow(std::sqrt(variance) / request.relative_error, 1.4));
         allowed = std::max(allowed, training_goal_);
-        if (targeted(request) && trainer_.uncovered_share() > DensityTrainer::uncovered_matters)
+        if (request.targeted() && trainer_.uncovered_share() > DensityTrainer::uncovered_matters)
             allowed = std::max(allowed, 0.25 * all);
         if (trainer_.rounds() >= 2 &&
             (trained + static_cast<double>(round_points_) > allowed || trainer_.rounds() >= max_rounds))
@@ -272,7 +313,7 @@ class AdaptiveEstimator final : public Estimator {
             estimate.next_end(request, first_sample(), density.balanced_points(), step_points);
         if (end <= points) return StepOutcome::exhausted;
         // Training gets the uniform points drawn since the exploration.
-        const bool keep = phase_ == Phase::uniform && trainer_.rounds() == 0 && targeted(request) &&
+        const bool keep = phase_ == Phase::uniform && trainer_.rounds() == 0 && request.targeted() &&
                           (end - points) * replicates() <= most_kept;
         SamplePoints drawn;
         auto added =
@@ -282,7 +323,7 @@ class AdaptiveEstimator final : public Estimator {
         estimate.grow(*added, end);
         if (phase_ == Phase::weighted)
             choose_again(request, points == 0);
-        else if (trainer_.rounds() == 0 && targeted(request) && trainer_.nonzero() >= enough_nonzero &&
+        else if (trainer_.rounds() == 0 && request.targeted() && trainer_.nonzero() >= enough_nonzero &&
                  estimate.error_ratio(request) > 1 && !uniform_will_do(request) &&
                  request.max_evaluations >= smallest_budget * training_points) {
             estimate.compare_anew(); // slower than expected
@@ -318,7 +359,7 @@ class AdaptiveEstimator final : public Estimator {
     void choose_again(const StepRequest& request, bool first) {
         const double ratio = weighted_.error_ratio(request);
         // For uneven integrands the error of uniform points is too uncertain for that.
-        const bool sooner = targeted(request) && trainer_.effective_share() > flat &&
+        const bool sooner = request.targeted() && trainer_.effective_share() > flat &&
                             uniform_.expected_rest(request) < much_sooner * weighted_.expected_rest(request);
         const double more = static_cast<double>(uniform_.points()) / static_cast<double>(weighted_.points());
         const bool better = first && more <= 2 &&
@@ -328,7 +369,7 @@ class AdaptiveEstimator final : public Estimator {
             phase_ = Phase::uniform;
             return;
         }
-        if (!targeted(request) || weighted_.points() < 4 * first_sample() || retrained_ >= max_retrainings)
+        if (!request.targeted() || weighted_.points() < 4 * first_sample() || retrained_ >= max_retrainings)
             return;
         const double sampled = static_cast<double>(weighted_.evaluations());
         const double left =
@@ -347,6 +388,8 @@ class AdaptiveEstimator final : public Estimator {
         if (lost) warn("the trained density lost what the exploring points had seen");
         if (trainer_.nonzero() == 0 && tally.value[0] == 0)
             warn("the integrand was zero at every point; a narrow peak may have been missed");
+        else if (trainer_.nonzero() < enough_nonzero && phase_ == Phase::weighted && known_peaks_ > 0)
+            tally.notes.push_back(outside_of_peaks());
         else if (trainer_.nonzero() < enough_nonzero)
             warn("only " + std::to_string(trainer_.nonzero()) +
                  " of the exploring points saw anything but zero; other places may have been missed");
@@ -356,6 +399,17 @@ class AdaptiveEstimator final : public Estimator {
         if (tally.degrees_of_freedom > 0 &&
             chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom) < disagreement)
             warn("the training rounds disagree with the result");
+    }
+
+    // What uniform points exclude where all but the known peaks is zero.
+    std::string outside_of_peaks() const {
+        constexpr double rule_of_three = 3; // 5 % of probability
+        std::array<char, 160> text;
+        std::snprintf(text.data(), text.size(),
+                      "nearly all of the domain is zero but for peaks that were seen by chance or scale; others in less "
+                      "than 1/%.0f of it would be missed in 5 %% of cases",
+                      static_cast<double>(uniform_.all_points()) / rule_of_three);
+        return text.data();
     }
 
     Problem problem_;
@@ -369,6 +423,7 @@ class AdaptiveEstimator final : public Estimator {
     std::uint64_t round_points_; // of the next round of training
     double training_goal_ = 0;   // evaluations that training may always take
     int retrained_ = 0;
+    std::uint64_t known_peaks_ = 0; // of the look, when peaks were last searched for
     DensityCheck check_;
     std::uint64_t abandoned_evaluations_ = 0;
     NonFiniteCount abandoned_non_finite_;

@@ -25,6 +25,7 @@ namespace montelux {
 // weights with a heavy tail, training rounds that disagree with the result, too few non-zero points.
 struct Adaptive {
     static constexpr std::string_view name = "adaptive";
+    static constexpr FirstLookUse first_look = FirstLookUse::always;
     static constexpr bool on_device = true; // draws there what training does not get
 
     int replicates = 16;            // at least 4

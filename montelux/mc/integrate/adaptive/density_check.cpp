@@ -24,7 +24,7 @@ constexpr double least_unseen = 2e-4;       // smaller shares are noise of the w
 double relative_target(const MixtureEstimate& estimate, const StepRequest& request) {
     Tally tally;
     estimate.tally(false, tally);
-    const double size = std::abs(tally.value[0]);
+    const double size = request.size(0, tally.value[0]);
     return std::max(request.relative_error, size > 0 ? request.absolute_error / size : 0);
 }
 
@@ -37,8 +37,7 @@ bool DensityCheck::covers(const DensityTrainer& trainer, std::uint64_t points) c
 
 bool DensityCheck::due(const DensityTrainer& trainer, const MixtureEstimate& estimate,
                        const StepRequest& request, std::uint64_t early) const {
-    const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
-    if (!targeted || covers(trainer, estimate.points())) return false;
+    if (!request.targeted() || covers(trainer, estimate.points())) return false;
     return estimate.points() >= early || (estimate.compared() && estimate.error_ratio(request) <= 1);
 }
 

@@ -9,6 +9,7 @@
 #include "montelux/mc/integrate/adaptive/difference_walk.h"
 #include "montelux/mc/integrate/adaptive/more_gaussians.h"
 #include "montelux/mc/integrate/adaptive/surprises.h"
+#include "montelux/mc/integrate/witness/first_look.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/stats/pareto_tail.h"
 
@@ -85,8 +86,9 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
     NonFiniteCount non_finite;
     const DensityFunction h = counted_steering(evaluations, non_finite);
     const Round& seen = recent_.back();
-    std::vector<Gaussian> modes =
-        find_modes(h, seen.x, seen.h, {.fruitless = fruitless, .max_evaluations = max_evaluations});
+    ModeSearch settings{.fruitless = fruitless, .max_evaluations = max_evaluations};
+    if (problem_.look) settings.peaks = problem_.look->peaks;
+    std::vector<Gaussian> modes = find_modes(h, seen.x, seen.h, settings);
     evaluations_ += evaluations;
     non_finite_.merge(non_finite);
     if (modes.empty()) return;

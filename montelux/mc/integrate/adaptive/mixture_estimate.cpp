@@ -51,13 +51,23 @@ double MixtureEstimate::inflation(double standard_error, int component) const {
 }
 
 double MixtureEstimate::standard_error(const CovarianceMoments& moments, int component) const {
-    const double error =
-        std::sqrt(moments.variance(component) / static_cast<double>(sums_.sums.replicates()));
+    const double error = caution() * std::sqrt(moments.variance(component) /
+                                               static_cast<double>(sums_.sums.replicates()));
     return std::max(error * inflation(error, component), least_error(moments, component));
 }
 
+double MixtureEstimate::caution() const {
+    return 1 + 1 / std::sqrt(2.0 * std::max(1, sums_.sums.replicates() - 1));
+}
+
 double MixtureEstimate::least_error(const CovarianceMoments& moments, int component) const {
-    const double least = sums_.extremes.least_standard_error(component, all_points());
+    double least = sums_.extremes.least_standard_error(component, all_points());
+    if (component == 0) {
+        const double beyond =
+            beyond_the_largest(sums_.extremes.tail(), all_points(), static_cast<double>(all_points()));
+        const double spread = std::sqrt(moments.variance(0) / static_cast<double>(sums_.sums.replicates()));
+        if (beyond > 0) least = std::max(least, std::hypot(beyond, caution() * spread));
+    }
     // Replicates of an indicator agree exactly if each has the same number of points on either side of a
     // jump; their spread then does not contain the jump's position within a cell of the net.
     if (moments.variance(component) > 0) return least;
@@ -65,13 +75,11 @@ double MixtureEstimate::least_error(const CovarianceMoments& moments, int compon
 }
 
 double MixtureEstimate::error_ratio(const StepRequest& request) const {
-    const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
     const CovarianceMoments moments = sums_.sums.moments(points_, false);
     double ratio = 0;
     for (int c = 0; c < moments.components(); ++c) {
-        const double size = std::abs(moments.mean(c)), error = standard_error(moments, c);
-        const double tolerance =
-            targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
+        const double value = moments.mean(c), error = standard_error(moments, c);
+        const double tolerance = request.targeted() ? request.tolerance(static_cast<std::size_t>(c), value) : std::abs(value);
         if (error > 0) ratio = std::max(ratio, error / tolerance);
     }
     return ratio;
@@ -83,8 +91,7 @@ std::uint64_t MixtureEstimate::next_end(const StepRequest& request, std::uint64_
         points_ + request.max_evaluations / static_cast<std::uint64_t>(sums_.sums.replicates());
     std::uint64_t goal = points_ == 0 ? first : next_balanced(points_);
     if (points_ > 0) {
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
-        const double wanted = targeted ? static_cast<double>(points_) * std::min(2.0, error_ratio(request))
+        const double wanted = request.targeted() ? static_cast<double>(points_) * std::min(2.0, error_ratio(request))
                                        : static_cast<double>(std::min(2 * points_, affordable));
         while (static_cast<double>(next_balanced(goal)) <= wanted) goal = next_balanced(goal);
     }
@@ -107,8 +114,11 @@ void MixtureEstimate::tally(bool full_covariance, Tally& tally) const {
     }
     const CovarianceMoments moments = sums_.sums.moments(points_, full_covariance);
     tally_mean(moments, tally);
+    for (std::size_t c = 0; c < m; ++c)
+        tally.absolute.push_back(sums_.extremes.mean_magnitude(static_cast<int>(c), all_points()));
     std::vector<double> factor(m);
-    for (std::size_t c = 0; c < m; ++c) factor[c] = inflation(tally.standard_error[c], static_cast<int>(c));
+    for (std::size_t c = 0; c < m; ++c)
+        factor[c] = caution() * inflation(caution() * tally.standard_error[c], static_cast<int>(c));
     for (std::size_t c = 0; c < m; ++c) tally.standard_error[c] *= factor[c];
     for (std::size_t i = 0; i < tally.covariance.size(); ++i)
         tally.covariance[i] *= factor[i / m] * factor[i % m];
@@ -126,8 +136,10 @@ bool MixtureEstimate::heavy_tailed(double standard_error) const {
 }
 
 void MixtureEstimate::warn_of_tail(double standard_error, std::vector<std::string>& warnings) const {
-    warn_of_heavy_tail(sums_.extremes.tail(), all_points(), static_cast<double>(all_points()), standard_error,
-                       warnings);
+    const double n = static_cast<double>(all_points());
+    const double beyond = beyond_the_largest(sums_.extremes.tail(), all_points(), n); // which the error contains
+    const double spread = std::sqrt(std::max(0.0, standard_error * standard_error - beyond * beyond));
+    warn_of_heavy_tail(sums_.extremes.tail(), all_points(), n, spread, warnings);
 }
 
 bool MixtureEstimate::has_surprising_weights() const {

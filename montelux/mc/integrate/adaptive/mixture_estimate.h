@@ -63,6 +63,9 @@ class MixtureEstimate {
     // Lower bound by the number of points, whatever the spread of the replicates.
     double least_error(const CovarianceMoments& moments, int component) const;
     double inflation(double standard_error, int component) const;
+    // By which errors are raised: a run stops as soon as they are small enough, and so prefers those that chance made too
+    // small. One standard deviation of an error that is estimated from so many replicates.
+    double caution() const;
 
     MixtureSums sums_;
     std::uint64_t points_ = 0, points_before_ = 0;

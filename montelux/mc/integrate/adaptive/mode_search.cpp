@@ -11,7 +11,10 @@ namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::max();
 constexpr double least_excess = 3;        // of log h above what known modes explain, for another search
-constexpr double least_difference = 1e-8; // of coordinates, in widths of the cube
+constexpr double first_difference = 0.02, least_difference = 1e-8; // of coordinates, in widths of the cube
+constexpr double longest_step = 0.3;      // of a coordinate
+constexpr std::size_t whole_curvature = 10; // variables up to which a step takes the whole matrix of curvatures
+constexpr double least_coordinate = 1e-12; // distance from the faces
 
 class Climber {
   public:
@@ -37,10 +40,11 @@ class Climber {
         return values;
     }
 
-    // Moves x uphill, coordinate-wise Newton steps with a backtracking line search; returns log h there.
-    double climb(std::vector<double>& x) {
+    // Moves x uphill, by Newton steps with a backtracking line search; returns log h there. `width`: of
+    // the first differences.
+    double climb(std::vector<double>& x, double width = first_difference) {
         double top = log_at({x})[0];
-        double width = 0.02;
+        const double least_width = std::min(least_difference, 1e-3 * width);
         constexpr std::array lengths{1.0, 0.4, 0.16, 0.064, 0.026, 0.01};
         for (int step = 0; step < 60 && budget_ >= 2 * n_ + lengths.size(); ++step) {
             std::vector<std::vector<double>> around;
@@ -56,25 +60,17 @@ class Climber {
             if (std::ranges::find(f, nowhere) != f.end()) {
                 // Zero there, by a jump or an underflow: takes closer differences.
                 width *= 0.3;
-                if (width < least_difference) break;
+                if (width < least_width) break;
                 continue;
             }
-            std::vector<double> direction(n_);
             double expected = 0;
-            for (std::size_t d = 0; d < n_; ++d) {
-                const double up = f[2 * d], down = f[2 * d + 1];
-                const double gradient = (up - down) / (2 * h[d]),
-                             curvature = (up + down - 2 * top) / (h[d] * h[d]);
-                direction[d] = curvature < 0 ? -gradient / curvature : gradient > 0 ? 0.1 : -0.1;
-                direction[d] = std::clamp(direction[d], -0.3, 0.3);
-                expected += std::abs(gradient * direction[d]);
-            }
+            const std::vector<double> direction = uphill(x, top, h, f, expected);
             if (!(expected > 1e-3)) break;
             std::vector<std::vector<double>> tries;
             for (double length : lengths) {
                 tries.push_back(x);
                 for (std::size_t d = 0; d < n_; ++d)
-                    tries.back()[d] = std::clamp(x[d] + length * direction[d], 1e-6, 1 - 1e-6);
+                    tries.back()[d] = std::clamp(x[d] + length * direction[d], least_coordinate, 1 - least_coordinate);
             }
             const double before = top;
             for (auto& point : tries) { // one at a time: the first is nearly always the best
@@ -88,17 +84,65 @@ class Climber {
                 if (top - before < 1e-3) break;
             } else {
                 width *= 0.3;
-                if (width < least_difference) break;
+                if (width < least_width) break;
             }
         }
         return top;
     }
 
+    // A step uphill from the values f around x at differences h, and the rise that its slope promises. In few variables by
+    // the whole matrix of curvatures, so that it follows ridges in any direction; else along each variable alone.
+    std::vector<double> uphill(const std::vector<double>& x, double top, const std::vector<double>& h,
+                               const std::vector<double>& f, double& expected) {
+        std::vector<double> gradient(n_), curvature(n_ * n_, 0.0), direction(n_, 0.0);
+        for (std::size_t d = 0; d < n_; ++d) {
+            gradient[d] = (f[2 * d] - f[2 * d + 1]) / (2 * h[d]);
+            curvature[d * n_ + d] = (f[2 * d] + f[2 * d + 1] - 2 * top) / (h[d] * h[d]);
+        }
+        bool whole = n_ > 1 && n_ <= whole_curvature && budget_ >= 4 * n_ * n_;
+        if (whole) {
+            std::vector<std::vector<double>> corners;
+            for (std::size_t i = 0; i < n_; ++i)
+                for (std::size_t j = 0; j < i; ++j)
+                    for (auto [a, b] : {std::pair(1, 1), std::pair(-1, -1), std::pair(1, -1), std::pair(-1, 1)}) {
+                        corners.push_back(x);
+                        corners.back()[i] += a * h[i];
+                        corners.back()[j] += b * h[j];
+                    }
+            const std::vector<double> g = log_at(corners);
+            whole = std::ranges::find(g, nowhere) == g.end();
+            std::size_t at = 0;
+            for (std::size_t i = 0; whole && i < n_; ++i)
+                for (std::size_t j = 0; j < i; ++j, at += 4)
+                    curvature[i * n_ + j] = curvature[j * n_ + i] =
+                        (g[at] + g[at + 1] - g[at + 2] - g[at + 3]) / (4 * h[i] * h[j]);
+        }
+        if (whole) {
+            const Eigensystem axes = symmetric_eigensystem(curvature, static_cast<int>(n_));
+            for (std::size_t k = 0; k < n_; ++k) {
+                double slope = 0;
+                for (std::size_t d = 0; d < n_; ++d) slope += axes.vectors[d * n_ + k] * gradient[d];
+                const double size = std::abs(axes.values[k]);
+                const double step = std::clamp(size > 0 ? slope / size : 0, -longest_step, longest_step);
+                for (std::size_t d = 0; d < n_; ++d) direction[d] += step * axes.vectors[d * n_ + k];
+            }
+        } else {
+            for (std::size_t d = 0; d < n_; ++d) {
+                const double c = curvature[d * n_ + d];
+                direction[d] = std::clamp(c < 0 ? -gradient[d] / c : gradient[d] > 0 ? 0.1 : -0.1, -longest_step, longest_step);
+            }
+        }
+        for (std::size_t d = 0; d < n_; ++d) expected += std::abs(gradient[d] * direction[d]);
+        return direction;
+    }
+
     // The Gaussian whose logarithm is curved like log h at x.
-    std::optional<Gaussian> laplace(const std::vector<double>& x, double top, double widest) {
+    std::optional<Gaussian> laplace(const std::vector<double>& x, double top, double widest,
+                                    const std::vector<double>& extent = {}) {
         if (budget_ < 8 * n_ + 2 * n_ * n_) return std::nullopt;
         // Steps over which log h falls by something like one half.
-        std::vector<double> h(n_, 0.02);
+        std::vector<double> h = extent.empty() ? std::vector<double>(n_, first_difference) : extent;
+        for (std::size_t d = 0; d < n_; ++d) h[d] = std::min(h[d], 0.49 * std::min(x[d], 1 - x[d]));
         for (int round = 0; round < 16; ++round) {
             std::vector<std::vector<double>> around;
             for (std::size_t d = 0; d < n_; ++d)
@@ -211,6 +255,16 @@ std::vector<double>::const_iterator least_explained(const std::vector<double>& l
     return least;
 }
 
+std::optional<Gaussian> diagonal_gaussian(const std::vector<double>& mean, const std::vector<double>& deviations) {
+    const std::size_t n = mean.size();
+    std::vector<double> factor(n * n, 0.0);
+    for (std::size_t d = 0; d < n; ++d) {
+        if (!(deviations[d] > 0)) return std::nullopt;
+        factor[d * n + d] = deviations[d];
+    }
+    return Gaussian(mean, std::move(factor));
+}
+
 } // namespace
 
 std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
@@ -223,6 +277,28 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
     for (std::size_t i = 0; i < n; ++i) excess[i] = h_at_x[i] > 0 ? std::log(h_at_x[i]) : nowhere;
     std::vector<double> explained(n, nowhere), log_h = excess;
     std::vector<double> log_pdf(n), point(static_cast<std::size_t>(x.dimensions()));
+    auto add = [&](Gaussian&& mode, double top) {
+        mode.log_pdf(x, log_pdf);
+        for (std::size_t i = 0; i < n; ++i) {
+            explained[i] = std::max(explained[i], top + log_pdf[i] - mode.log_norm());
+            excess[i] = log_h[i] == nowhere ? nowhere : log_h[i] - explained[i];
+        }
+        modes.push_back(std::move(mode));
+    };
+    auto is_known = [&](const std::vector<double>& at) {
+        return std::any_of(modes.begin(), modes.end(), [&](const Gaussian& g) {
+            return g.squared_distance(at) < 1 + 0.5 * x.dimensions();
+        });
+    };
+    for (const Witness& peak : settings.peaks) {
+        std::vector<double> at = peak.u;
+        const double top = climber.climb(at, *std::ranges::min_element(peak.extent));
+        if (top == nowhere || is_known(at)) continue;
+        std::optional<Gaussian> mode = climber.laplace(at, top, settings.widest, peak.extent);
+        // A cusp or a corner has no curvature: as wide as it is at half its height.
+        if (!mode) mode = diagonal_gaussian(at, peak.extent);
+        if (mode) add(std::move(*mode), top);
+    }
     int fruitless = 0, remote = 0;
     while (climber.left() > 0 && fruitless < settings.fruitless &&
            static_cast<int>(modes.size()) < settings.most_modes) {
@@ -236,22 +312,14 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
         x.gather(index, point.data());
         excess[index] = log_h[index] = nowhere; // each start once
         const double top = climber.climb(point);
-        const bool known = std::any_of(modes.begin(), modes.end(), [&](const Gaussian& g) {
-            return g.squared_distance(point) < 1 + 0.5 * x.dimensions();
-        });
         std::optional<Gaussian> mode;
-        if (!known) mode = climber.laplace(point, top, settings.widest);
+        if (!is_known(point)) mode = climber.laplace(point, top, settings.widest);
         if (!mode) {
             ++fruitless;
             continue;
         }
         fruitless = 0;
-        mode->log_pdf(x, log_pdf);
-        for (std::size_t i = 0; i < n; ++i) {
-            explained[i] = std::max(explained[i], top + log_pdf[i] - mode->log_norm());
-            excess[i] = log_h[i] == nowhere ? nowhere : log_h[i] - explained[i];
-        }
-        modes.push_back(std::move(*mode));
+        add(std::move(*mode), top);
     }
     return modes;
 }

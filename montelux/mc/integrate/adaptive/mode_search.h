@@ -8,6 +8,7 @@
 
 #include "montelux/mc/integrate/adaptive/gaussian.h"
 #include "montelux/mc/integrate/points.h"
+#include "montelux/mc/integrate/witness/largest_values.h"
 
 namespace montelux {
 
@@ -17,6 +18,7 @@ struct ModeSearch {
     int remote = 3;                    // searches from points far from all modes, although h is small there
     std::uint64_t max_evaluations = 0; // in all
     double widest = 0.3;               // largest standard deviation of a Gaussian, of the cube's width
+    std::span<const Witness> peaks{};  // known tops with their extents, which come first
 };
 
 // h at a batch of points.

@@ -23,6 +23,11 @@ namespace {
 // If all values are zero, the error is infinite until this many evaluations in this many regions.
 constexpr std::uint64_t search_evaluations = 4096;
 constexpr std::size_t search_regions = 16;
+constexpr std::uint64_t regions_all_confirmed =
+    32; // of one variable, of which all are halved to confirm the others
+// Ratios of successive differences: those of a jump are a half; the largest that is told from a constant.
+constexpr double slow_ratio = 0.6, slowest_ratio = 0.999;
+constexpr double caution_of_series = 2; // differences depend on where in a region a pole lies
 // Points after which an integrand with equal values at all of them is taken as constant.
 constexpr std::uint64_t most_equal_values = 1 << 21;
 
@@ -55,6 +60,11 @@ class CubatureEstimator final : public Estimator {
         std::vector<std::size_t> parents;
         // In one dimension, and in four and more, the cube is first evaluated by the cheaper rule, which may
         // suffice.
+        if (!regions_.empty() && reached(request) && !verification_.recalled(regions_.count())) {
+            if (verification_.recall(regions_, totals_.value(), totals_.error(), request)) add_up();
+            return StepOutcome::advanced;
+        }
+        verification_.update(regions_, totals_.value(), totals_.error(), request);
         const bool retry = regions_.count() == 1 && started_coarse() && !regions_.marks(0).rough && !refined_;
         const bool check = !regions_.empty() && !searching();
         if (check && verification_.due(regions_, totals_.value(), totals_.error(), evaluations_, request,
@@ -113,7 +123,10 @@ class CubatureEstimator final : public Estimator {
             correct_cube(regions_, fresh);
             regions_ = std::move(fresh);
         } else {
-            if (confirms) confirmation_.compare(regions_, parents, fresh, totals_.error());
+            if (confirms) {
+                confirmation_.compare(regions_, parents, fresh, totals_.error());
+                verification_.claim(totals_.error());
+            }
             add_face_errors(work);
             replace(parents, fresh);
         }
@@ -134,10 +147,12 @@ class CubatureEstimator final : public Estimator {
         }
         tally.value = totals_.value();
         tally.standard_error = totals_.error();
+        tally.absolute = totals_.absolute();
         if (searching())
             for (std::size_t c = 0; c < components(); ++c)
                 if (nonzero_[c] == 0) tally.standard_error[c] = std::numeric_limits<double>::infinity();
-        tally.ready = !searching() && verification_.verified(totals_.value()) && !confirmation_.pending();
+        tally.ready = !searching() && verification_.verified(totals_.value()) && !confirmation_.pending() &&
+                      (verification_.recalled(regions_.count()) || at_limit_);
         tally.at_limit = at_limit_;
         // In one variable halving alone finds every feature of some width.
         tally.localised = n_ > 1 && verification_.evaluations() > 0 && verification_.blind();
@@ -198,11 +213,9 @@ class CubatureEstimator final : public Estimator {
 
     bool reached(const StepRequest& request) const { return reaches(totals_.error(), request); }
     bool reaches(const std::vector<double>& error, const StepRequest& request) const {
-        if (!(request.relative_error > 0 || request.absolute_error > 0)) return false;
+        if (!request.targeted()) return false;
         for (std::size_t c = 0; c < components(); ++c)
-            if (!(error[c] <=
-                  std::max(request.absolute_error, request.relative_error * std::abs(totals_.value()[c]))))
-                return false;
+            if (!(error[c] <= request.tolerance(c, totals_.value()[c]))) return false;
         return true;
     }
 
@@ -217,14 +230,18 @@ class CubatureEstimator final : public Estimator {
         if (made == 0) return StepOutcome::cancelled;
         evaluations_ += made;
         add_up();
-        if (n_ > 1 && reached(request)) confirmation_.require(regions_);
+        if ((n_ > 1 || regions_.count() > 1) && reached(request)) confirmation_.require(regions_);
         return StepOutcome::advanced;
     }
 
     // As many as cost about as much as a check; none if there are not enough evaluations left.
     std::vector<std::size_t> regions_to_confirm(const StepRequest& request) {
         const std::uint64_t pair = 2 * fine_->points();
-        const std::uint64_t most = std::min(check_points_, request.max_evaluations / 2) / pair;
+        // In one variable regions are cheap, and random points show little of what oscillates: all, or a quarter of many.
+        const std::uint64_t all = regions_.count(),
+                            many = std::max(std::min(all, regions_all_confirmed), all / 4);
+        const std::uint64_t wanted = n_ == 1 ? std::max(check_points_, many * pair) : check_points_;
+        const std::uint64_t most = std::min(wanted, request.max_evaluations / 2) / pair;
         if (most == 0) return {};
         return confirmation_.choose(regions_, scales(request), most, problem_.seed);
     }
@@ -259,14 +276,13 @@ class CubatureEstimator final : public Estimator {
     std::vector<double> scales(const StepRequest& request) const {
         std::vector<double> scale(components());
         bool all_reached = true;
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
         for (std::size_t c = 0; c < scale.size(); ++c) {
-            const double size = std::abs(totals_.value()[c]);
-            scale[c] = targeted ? std::max(request.absolute_error, request.relative_error * size) : size;
+            const double value = totals_.value()[c];
+            scale[c] = request.targeted() ? request.tolerance(c, value) : std::abs(value);
             if (scale[c] == 0) scale[c] = totals_.error()[c];
             all_reached = all_reached && totals_.error()[c] <= scale[c];
         }
-        if (targeted && !all_reached)
+        if (request.targeted() && !all_reached)
             for (std::size_t c = 0; c < scale.size(); ++c)
                 if (totals_.error()[c] <= scale[c]) scale[c] = 0;
         return scale;
@@ -291,6 +307,15 @@ class CubatureEstimator final : public Estimator {
                     of_a = of_b = difference / 2;
                     halves.marks(a).exhausted = halves.marks(b).exhausted = false;
                 }
+                // Towards a pole the differences of successive halvings fall as a geometric series, slowly for a power
+                // close to -1: the larger half is off by the sum of those to come.
+                const double before = regions_.difference(parent, c);
+                const double ratio = before > 0 ? std::min(difference / before, slowest_ratio) : 0;
+                const std::size_t half = of_a >= of_b ? a : b;
+                if (ratio > slow_ratio)
+                    halves.error(half)[c] =
+                        std::max(halves.error(half)[c], caution_of_series * difference * ratio / (1 - ratio));
+                halves.difference(half, c) = difference;
             }
         }
         std::size_t next = regions_.count();

@@ -34,6 +34,7 @@ namespace montelux {
 // exp(-0.6 check_points v). The seed only affects these points.
 struct Cubature {
     static constexpr std::string_view name = "cubature";
+    static constexpr FirstLookUse first_look = FirstLookUse::always;
     static constexpr int max_dimensions = 15;
 
     // Bytes that the regions may take; the integration ends with a warning when they are used up.

@@ -17,6 +17,7 @@ namespace montelux {
 struct CubatureWitness {
     std::size_t region = 0;
     std::vector<double> x, value; // one per coordinate, one per component
+    double volume = 1;            // of the part of the cube that it may speak for
 };
 
 struct CubatureCheck {

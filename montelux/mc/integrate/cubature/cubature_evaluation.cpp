@@ -152,6 +152,11 @@ void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::sp
         const auto end_of_region = std::lower_bound(next, not_finite.end(), first + rules[r]->points());
         assess(fresh, r, *rules[r], of_region, next != end_of_region, totals);
         next = end_of_region;
+        for (std::size_t c = 0; n == 1 && c < components; ++c)
+            for (bool upper : {false, true}) {
+                const SymmetricRule::FaceValue face = rules[r]->face_value(of_region[c], 0, upper);
+                fresh.face(r, c, upper) = {face.value, face.slack, face.unseen};
+            }
         if (!work.parents.empty()) {
             const int axis = work.regions.marks(work.parents[r / 2]).axis;
             for (std::size_t c = 0; c < components; ++c)

@@ -22,6 +22,12 @@ double CubatureRegions::distance(std::size_t r, std::span<const double> x) const
     return distance;
 }
 
+bool CubatureRegions::touches(std::size_t r, std::span<const double> x) const {
+    for (std::size_t d = 0; d < n_; ++d)
+        if (std::abs(x[d] - centre(r)[d]) > half_width(r)[d]) return false;
+    return true;
+}
+
 std::size_t CubatureRegions::containing(std::span<const double> x) const {
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();
@@ -43,6 +49,8 @@ void CubatureRegions::resize(std::size_t count) {
     face_error_.resize(count * m_);
     lowest_.resize(count * m_);
     highest_.resize(count * m_);
+    difference_.resize(count * m_, 0.0);
+    if (n_ == 1) faces_.resize(2 * count * m_);
     marks_.resize(count);
 }
 
@@ -72,25 +80,32 @@ void CubatureRegions::copy(std::size_t to, const CubatureRegions& from, std::siz
     std::ranges::copy(from.face_error(r), face_error(to).begin());
     std::ranges::copy(from.lowest(r), lowest(to).begin());
     std::ranges::copy(from.highest(r), highest(to).begin());
+    for (std::size_t i = 0; n_ == 1 && i < 2 * m_; ++i) faces_[2 * to * m_ + i] = from.faces_[2 * r * m_ + i];
+    for (std::size_t c = 0; c < m_; ++c) difference_[to * m_ + c] = from.difference_[r * m_ + c];
     marks(to) = from.marks(r);
 }
 
 void CubatureRegions::save(StateWriter& state) const {
-    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_})
+    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_, &difference_})
         state.put(*numbers);
+    for (const Face& f : faces_)
+        for (double x : {f.value, f.slack, f.unseen}) state.put(x);
     for (const Marks& m : marks_)
         state.put(static_cast<std::uint64_t>(m.axis | m.face_axis << 8 | m.rough << 16 | m.exhausted << 17 |
                                              m.indivisible << 18 | m.face_upper << 19));
 }
 
 void CubatureRegions::load(StateReader& state) {
-    for (auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_})
+    for (auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_, &difference_})
         *numbers = state.get_doubles();
     const std::size_t regions = centre_.size() / n_;
     if (centre_.size() != regions * n_ || half_width_.size() != regions * n_ ||
         std::ranges::any_of(std::array{&value_, &error_, &face_error_, &lowest_, &highest_},
                             [&](const auto* numbers) { return numbers->size() != regions * m_; }))
         throw Error("the saved regions do not fit the dimensions or components");
+    faces_.resize(n_ == 1 ? 2 * regions * m_ : 0);
+    for (Face& f : faces_)
+        for (double* x : {&f.value, &f.slack, &f.unseen}) *x = state.get_double();
     marks_.resize(regions);
     for (Marks& m : marks_) {
         const std::uint64_t word = state.get_word();

@@ -27,7 +27,7 @@ class CubatureRegions {
     std::size_t count() const { return marks_.size(); }
     bool empty() const { return marks_.empty(); }
     // Bytes that one region takes.
-    std::size_t bytes_each() const { return 8 * (2 * n_ + 5 * m_) + sizeof(Marks); }
+    std::size_t bytes_each() const { return 8 * (2 * n_ + 6 * m_) + sizeof(Marks); }
 
     std::span<double> centre(std::size_t r) { return {&centre_[r * n_], n_}; }
     std::span<const double> centre(std::size_t r) const { return {&centre_[r * n_], n_}; }
@@ -45,11 +45,21 @@ class CubatureRegions {
     std::span<const double> lowest(std::size_t r) const { return {&lowest_[r * m_], m_}; }
     std::span<double> highest(std::size_t r) { return {&highest_[r * m_], m_}; }
     std::span<const double> highest(std::size_t r) const { return {&highest_[r * m_], m_}; }
+    // Of one variable: what the rule predicts of a component at an end of the region (SymmetricRule::FaceValue).
+    struct Face {
+        double value, slack, unseen;
+    };
+    // Between the value of the region that was halved and those of its halves, in the half of the larger error.
+    double& difference(std::size_t r, std::size_t c) { return difference_[r * m_ + c]; }
+    Face& face(std::size_t r, std::size_t c, bool upper) { return faces_[2 * (r * m_ + c) + upper]; }
+    const Face& face(std::size_t r, std::size_t c, bool upper) const { return faces_[2 * (r * m_ + c) + upper]; }
     Marks& marks(std::size_t r) { return marks_[r]; }
     const Marks& marks(std::size_t r) const { return marks_[r]; }
     double volume(std::size_t r) const;
     // Of a point from the centre, in half widths: at most 1 inside, but for rounding.
     double distance(std::size_t r, std::span<const double> x) const;
+    // Is the point inside, or on a face?
+    bool touches(std::size_t r, std::span<const double> x) const;
     // The region that holds the point of the unit cube.
     std::size_t containing(std::span<const double> x) const;
 
@@ -69,7 +79,8 @@ class CubatureRegions {
     static std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
     std::size_t n_, m_;
-    std::vector<double> centre_, half_width_, value_, error_, face_error_, lowest_, highest_;
+    std::vector<double> centre_, half_width_, value_, error_, face_error_, lowest_, highest_, difference_;
+    std::vector<Face> faces_; // empty in several variables
     std::vector<Marks> marks_;
 };
 

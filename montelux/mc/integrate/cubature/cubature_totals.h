@@ -26,6 +26,8 @@ class CubatureTotals {
 
     const std::vector<double>& value() const { return value_; }
     const std::vector<double>& error() const { return error_; }
+    // Integrals of the absolute values, roughly.
+    const std::vector<double>& absolute() const { return absolute_; }
     // Without the part for equal values, which halving does not reduce.
     const std::vector<double>& rule_error() const { return rule_error_; }
     double inflation(std::size_t component) const { return inflation_[component]; }
@@ -40,7 +42,7 @@ class CubatureTotals {
     void load(StateReader& state);
 
   private:
-    std::vector<double> value_, error_, rule_error_, inflation_;
+    std::vector<double> value_, error_, rule_error_, inflation_, absolute_;
     std::vector<char> equal_; // were all values the same, other than zero?
     // Recent squared differences of regions from their halves, and the squares that their errors predicted.
     std::vector<double> disagreement_, expected_;

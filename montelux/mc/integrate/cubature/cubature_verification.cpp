@@ -8,8 +8,10 @@
 #include <utility>
 
 #include "montelux/mc/integrate/adaptive/mode_search.h"
+#include "montelux/mc/integrate/cubature/cubature_seams.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/integrate/witness/first_look.h"
 
 namespace montelux {
 namespace {
@@ -31,8 +33,10 @@ constexpr std::uint64_t most_of_jumps = 5;
 constexpr double least_of_jumps = 0.01;
 constexpr std::size_t fewest_of_jumps = 32;
 constexpr std::size_t most_climbs = 8; // of a check
-
-bool targeted(const StepRequest& request) { return request.relative_error > 0 || request.absolute_error > 0; }
+constexpr std::size_t most_seen = 256; // surprises that are kept for later
+constexpr double shown_by_checks = 0.01; // error that they can show, as a share of the tolerance
+constexpr double share_of_claim = 0.25;  // of an error that was claimed and confirmed, which stays
+constexpr double peak_widening = 2;    // volume of a peak over that of its half height
 
 // The least volume that holds half of the integral of |g|, of the component that is most concentrated.
 double volume_of_half(const CubatureRegions& regions) {
@@ -113,12 +117,19 @@ std::uint64_t climb(const Evaluator& evaluator, const CubatureRegions& regions,
     return evaluations;
 }
 
+void save_witness(StateWriter& state, const CubatureWitness& w) {
+    state.put(static_cast<std::uint64_t>(w.region));
+    state.put(w.x);
+    state.put(w.value);
+    state.put(w.volume);
+}
+
 } // namespace
 
 CubatureVerification::CubatureVerification(const Problem& problem, std::uint64_t points)
     : problem_(problem), points_(points), residual_(problem.evaluator.components(), problem.full_covariance),
       lowest_(static_cast<std::size_t>(problem.evaluator.components()), infinity),
-      highest_(lowest_.size(), -infinity), next_(4 * points) {}
+      highest_(lowest_.size(), -infinity), next_(4 * points), shown_(lowest_.size(), 0.0) {}
 
 bool CubatureVerification::verified(std::span<const double> value) const {
     if (points_ == 0) return true;
@@ -141,7 +152,7 @@ bool CubatureVerification::due(const CubatureRegions& regions, std::span<const d
     }
     if (!fresh) return false;
     if (claimed) return true;
-    if (targeted(request)) return false;
+    if (request.targeted()) return false;
     const std::uint64_t all = evaluations + request.max_evaluations;
     return evaluations >= next_ || request.max_evaluations <= std::min(points_, all / 8) * 5 / 4;
 }
@@ -167,9 +178,9 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
             ++rough;
         }
     if (volume > least_of_jumps && rough >= fewest_of_jumps && problem_.evaluator.dimensions() > 1)
-        for (double v : value) {
-            const double target =
-                std::max(request.relative_error, v != 0 ? request.absolute_error / std::abs(v) : 0.0);
+        for (std::size_t c = 0; c < value.size(); ++c) {
+            const double size = request.size(c, value[c]);
+            const double target = size > 0 ? request.tolerance(c, value[c]) / size : 0;
             if (target > 0)
                 wanted = std::max(
                     wanted, static_cast<std::uint64_t>(std::min(
@@ -177,7 +188,7 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
         }
     const std::uint64_t all = evaluations + request.max_evaluations;
     const std::uint64_t points =
-        std::min({wanted, all / (targeted(request) ? 2 : 8), request.max_evaluations});
+        std::min({wanted, all / (request.targeted() ? 2 : 8), request.max_evaluations});
     return points < fewest_points ? 0 : points;
 }
 
@@ -193,9 +204,8 @@ std::vector<double> CubatureVerification::tolerances(const CubatureRegions& regi
                 regions.volume(r) * std::max(std::abs(regions.lowest(r)[c]), std::abs(regions.highest(r)[c]));
         // A relative target of a vanishing value cannot be met.
         tolerance[c] = std::max(error[c], least_tolerance * size);
-        if (targeted(request))
-            tolerance[c] =
-                std::max({tolerance[c], request.absolute_error, request.relative_error * std::abs(value[c])});
+        if (request.targeted())
+            tolerance[c] = std::max(tolerance[c], request.tolerance(c, value[c]));
     }
     return tolerance;
 }
@@ -229,6 +239,8 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     }
     points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);
     witnesses_ = std::move(check->surprises);
+    for (const CubatureWitness& w : witnesses_)
+        if (seen_.size() < most_seen) seen_.push_back(w);
     disagrees_ = false;
     for (std::size_t c = 0; c < value.size(); ++c) {
         const double difference = check->difference[c], noise = check->standard_error[c];
@@ -245,6 +257,52 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     for (const CubatureWitness& w : witnesses_) of_regions.push_back(w.region);
     add_errors(regions, of_regions);
     return points + climbed;
+}
+
+bool CubatureVerification::recalled(std::size_t regions) const {
+    const std::size_t peaks = problem_.look ? problem_.look->peaks.size() : 0;
+    return points_ == 0 || (recalled_regions_ == regions && recalled_peaks_ == peaks);
+}
+
+void CubatureVerification::update(const CubatureRegions& regions, std::span<const double> value,
+                                  std::span<const double> error, const StepRequest& request) {
+    if (!witnesses_.empty()) tolerance_ = tolerances(regions, value, error, request);
+}
+
+bool CubatureVerification::recall(CubatureRegions& regions, std::span<const double> value,
+                                  std::span<const double> error, const StepRequest& request) {
+    if (recalled(regions.count())) return false;
+    recalled_regions_ = regions.count();
+    recalled_peaks_ = problem_.look ? problem_.look->peaks.size() : 0;
+    tolerance_ = tolerances(regions, value, error, request);
+    std::vector<std::size_t> of_regions;
+    auto compare = [&](std::span<const double> x, const std::vector<double>& g, double volume) {
+        for (std::size_t r = 0; r < regions.count(); ++r) {
+            if (!regions.touches(r, x) || regions.marks(r).indivisible) continue;
+            CubatureWitness witness{r, {x.begin(), x.end()}, g, volume};
+            bool open = false;
+            for (std::size_t c = 0; c < g.size(); ++c) open = open || weight(regions, witness, c) > 0;
+            if (!open) continue;
+            of_regions.push_back(r);
+            witnesses_.push_back(std::move(witness));
+        }
+    };
+    if (problem_.look) {
+        for (const Witness& w : problem_.look->witnesses) compare(w.u, w.value, w.volume);
+        for (const Witness& w : problem_.look->peaks) compare(w.u, w.value, peak_widening * w.volume);
+    }
+    for (const CubatureWitness& w : std::vector<CubatureWitness>(seen_)) compare(w.x, w.value, w.volume);
+    if (!of_regions.empty()) add_errors(regions, of_regions);
+    const bool jumps = problem_.evaluator.dimensions() == 1 && raise_seam_errors(regions);
+    const bool wrong = jumps || !of_regions.empty();
+    // Once wrong, rules claim no smaller error than the checks can show.
+    for (std::size_t c = 0; wrong && c < value.size(); ++c) shown_[c] = shown_by_checks * request.tolerance(c, value[c]);
+    return wrong;
+}
+
+void CubatureVerification::claim(std::span<const double> error) {
+    for (std::size_t c = 0; c < shown_.size(); ++c)
+        if (std::isfinite(error[c])) shown_[c] = share_of_claim * error[c];
 }
 
 void CubatureVerification::add_differences(CubatureRegions& regions, const CubatureCheck& check,
@@ -270,7 +328,7 @@ double CubatureVerification::weight(const CubatureRegions& regions, const Cubatu
                                     std::size_t component) const {
     const double excess =
         surprise(regions, witness.region, component, witness.value[component], tolerance_[component]);
-    const double error = regions.volume(witness.region) * excess;
+    const double error = std::min(regions.volume(witness.region), witness.volume) * excess;
     return error > negligible_surprise * tolerance_[component] ? error : 0;
 }
 
@@ -330,11 +388,11 @@ double CubatureVerification::correlation(std::size_t a, std::size_t b) const {
 
 void CubatureVerification::save(StateWriter& state) const {
     state.put(static_cast<std::uint64_t>(witnesses_.size()));
-    for (const CubatureWitness& w : witnesses_) {
-        state.put(static_cast<std::uint64_t>(w.region));
-        state.put(w.x);
-        state.put(w.value);
-    }
+    for (const CubatureWitness& w : witnesses_) save_witness(state, w);
+    state.put(static_cast<std::uint64_t>(seen_.size()));
+    for (const CubatureWitness& w : seen_) save_witness(state, w);
+    state.put(static_cast<std::uint64_t>(recalled_regions_));
+    state.put(static_cast<std::uint64_t>(recalled_peaks_));
     for (const auto* numbers : {&checked_value_, &checked_error_, &tolerance_, &lowest_, &highest_})
         state.put(*numbers);
     montelux::save(state, residual_);
@@ -343,6 +401,7 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(next_);
     state.put(points_in_bulk_);
     state.put(slack_);
+    state.put(shown_);
     state.put(surprised_);
     state.put(disagrees_);
     montelux::save(state, non_finite_);
@@ -354,17 +413,22 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     auto fits = [](const std::vector<double>& numbers, std::size_t size) {
         if (numbers.size() != size) throw Error("the saved state has another number of components");
     };
-    witnesses_.clear();
-    for (std::uint64_t n = state.get_word(); n > 0; --n) {
-        CubatureWitness w;
-        w.region = state.get_word();
-        w.x = state.get_doubles();
-        w.value = state.get_doubles();
-        fits(w.x, static_cast<std::size_t>(problem_.evaluator.dimensions()));
-        fits(w.value, m);
-        if (w.region >= regions) throw Error("the saved state is damaged");
-        witnesses_.push_back(std::move(w));
+    for (auto* all : {&witnesses_, &seen_}) {
+        all->clear();
+        for (std::uint64_t n = state.get_word(); n > 0; --n) {
+            CubatureWitness w;
+            w.region = state.get_word();
+            w.x = state.get_doubles();
+            w.value = state.get_doubles();
+            w.volume = state.get_double();
+            fits(w.x, static_cast<std::size_t>(problem_.evaluator.dimensions()));
+            fits(w.value, m);
+            if (w.region >= regions) throw Error("the saved state is damaged");
+            all->push_back(std::move(w));
+        }
     }
+    recalled_regions_ = state.get_word();
+    recalled_peaks_ = state.get_word();
     for (auto* numbers : {&checked_value_, &checked_error_, &tolerance_, &lowest_, &highest_})
         *numbers = state.get_doubles();
     for (const auto* numbers : {&checked_value_, &checked_error_, &tolerance_})
@@ -377,6 +441,8 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     next_ = state.get_word();
     points_in_bulk_ = state.get_double();
     slack_ = state.get_doubles();
+    shown_ = state.get_doubles();
+    fits(shown_, m);
     surprised_ = state.get<int>() != 0;
     if (!slack_.empty()) fits(slack_, m);
     disagrees_ = state.get<int>() != 0;

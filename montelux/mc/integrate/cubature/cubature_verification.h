@@ -34,6 +34,17 @@ class CubatureVerification {
     // and nothing changed, when cancelled.
     std::uint64_t run(CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
                       std::uint64_t points, const StepRequest& request);
+    // Compares the regions with all that was seen before (by the first look, by earlier checks): what is a surprise to
+    // a region that contains or touches it becomes a witness. Costs no evaluations. True if there are any.
+    bool recall(CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
+                const StepRequest& request);
+    // Was this number of regions compared so?
+    bool recalled(std::size_t regions) const;
+    // Tolerances of open witnesses, which follow the value.
+    void update(const CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
+                const StepRequest& request);
+    // Notes errors that are claimed: halving a part of the regions to confirm them does not show much smaller ones.
+    void claim(std::span<const double> error);
     // Forgets that the values were checked.
     void renew() { checked_value_.clear(); }
     // Notes that a check could not be made.
@@ -54,7 +65,9 @@ class CubatureVerification {
     // parts may have been missed?
     bool blind() const { return points_in_bulk_ < enough_in_bulk; }
     // Additional error of a component if points have shown that the rules may be wrong.
-    double slack(std::size_t component) const { return slack_.empty() ? 0 : slack_[component]; }
+    double slack(std::size_t component) const {
+        return std::max(slack_.empty() ? 0.0 : slack_[component], shown_[component]);
+    }
     // Normally empty.
     const std::string& warning() const { return warning_; }
 
@@ -74,7 +87,9 @@ class CubatureVerification {
 
     Problem problem_;
     std::uint64_t points_;
-    std::vector<CubatureWitness> witnesses_;
+    std::vector<CubatureWitness> witnesses_; // open ones
+    std::vector<CubatureWitness> seen_;      // surprises of all checks
+    std::size_t recalled_regions_ = 0, recalled_peaks_ = 0;
     std::vector<double> checked_value_, checked_error_, tolerance_; // empty before the first check
     CovarianceMoments residual_;
     std::vector<double> lowest_, highest_;
@@ -83,7 +98,7 @@ class CubatureVerification {
     NonFiniteCount non_finite_;
     double points_in_bulk_ = 0;
     bool surprised_ = false; // by any check
-    std::vector<double> slack_;
+    std::vector<double> slack_, shown_; // by checks; by what was seen before, once it showed rules to be wrong
     bool disagrees_ = false; // the mean of the points, in the last check
     std::string warning_;
 };

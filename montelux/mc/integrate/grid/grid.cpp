@@ -149,7 +149,7 @@ class GridEstimator final : public Estimator {
         }
         const std::uint64_t twice = 2 * cells_, cost_of_twice = cost(twice);
         const bool fits = cost_of_twice <= limit && cost_of_twice != too_many;
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        const bool targeted = request.targeted();
         if (fits && (targeted || points(2 * twice) <= limit - cost_of_twice)) return twice;
         const std::uint64_t most = largest(limit);
         // Levels that are too close do not test each other.

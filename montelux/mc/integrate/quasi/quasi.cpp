@@ -73,6 +73,7 @@ class QuasiEstimator final : public Estimator {
         evaluations_ += size * static_cast<std::uint64_t>(replicates);
         relative_target_ = request.relative_error;
         absolute_target_ = request.absolute_error;
+        sizes_.assign(request.sizes.begin(), request.sizes.end());
         non_finite_.merge(non_finite);
         running_.merge(sums);
         running_extremes_.merge(extremes);
@@ -109,6 +110,7 @@ class QuasiEstimator final : public Estimator {
         state.put(evaluations_);
         state.put(relative_target_);
         state.put(absolute_target_);
+        state.put(sizes_);
         state.put(completed_.all());
         state.put(running_.all());
         completed_extremes_.save(state);
@@ -125,6 +127,7 @@ class QuasiEstimator final : public Estimator {
         evaluations_ = state.get_word();
         relative_target_ = state.get_double();
         absolute_target_ = state.get_double();
+        sizes_ = state.get_doubles();
         const int m = problem_.evaluator.components();
         for (ReplicateSums* sums : {&completed_, &running_}) {
             std::vector<double> all = state.get_doubles();
@@ -160,7 +163,7 @@ class QuasiEstimator final : public Estimator {
     // per replicate.
     std::uint64_t choose_points(const StepRequest& request, std::uint64_t each) const {
         const bool binary = kind_ == PointSetKind::sobol;
-        const bool targeted = request.relative_error > 0 || request.absolute_error > 0;
+        const bool targeted = request.targeted();
         if (each == 0) return 0;
         if (points_ == 0) {
             // A set without prefixes starts anew, which costs all its points in one step.
@@ -278,13 +281,12 @@ class QuasiEstimator final : public Estimator {
         if (previous_error_.empty()) return false;
         const double student = student_t_quantile(normal_cdf(3), replicates_ - 1) / 3;
         bool surely = true, twice = true;
+        const StepRequest target{.relative_error = relative_target_, .absolute_error = absolute_target_, .sizes = sizes_};
         for (std::size_t c = 0; c < tally.value.size(); ++c) {
-            auto target = [&](double value) {
-                return std::max(absolute_target_, relative_target_ * std::abs(value));
-            };
-            surely = surely && tally.standard_error[c] * student <= target(tally.value[c]);
-            twice = twice && tally.standard_error[c] <= target(tally.value[c]) &&
-                    previous_error_[c] <= target(previous_value_[c]);
+            const double tolerance = target.tolerance(c, tally.value[c]);
+            surely = surely && tally.standard_error[c] * student <= tolerance;
+            twice = twice && tally.standard_error[c] <= tolerance &&
+                    previous_error_[c] <= target.tolerance(c, previous_value_[c]);
         }
         return surely || twice;
     }
@@ -326,7 +328,8 @@ class QuasiEstimator final : public Estimator {
     // Points of each replicate: in the estimate; to be reached; and done on the way there.
     std::uint64_t points_ = 0, next_ = 0, position_ = 0;
     std::uint64_t evaluations_ = 0;
-    double relative_target_ = 0, absolute_target_ = 0; // of the last request
+    double relative_target_ = 0, absolute_target_ = 0; // of the last request,
+    std::vector<double> sizes_;                        // and its sizes
     ReplicateSums completed_, running_;
     ExtremeValues completed_extremes_, running_extremes_;
     std::vector<double> previous_value_, previous_error_; // at the number of points before

@@ -30,6 +30,7 @@ namespace montelux {
 // unknown, infinite.
 struct Quasi {
     static constexpr std::string_view name = "quasi";
+    static constexpr FirstLookUse first_look = FirstLookUse::with_target;
     static constexpr bool on_device = true;
 
     PointSetKind points = PointSetKind::sobol;

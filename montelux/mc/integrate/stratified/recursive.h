@@ -21,6 +21,7 @@ namespace montelux {
 // Stratified, are averaged with weights N^(1 + 2/n) that are fixed beforehand.
 struct Recursive {
     static constexpr std::string_view name = "recursive";
+    static constexpr FirstLookUse first_look = FirstLookUse::with_target;
 
     double pilot = 0.1; // part of the evaluations, in [0.01, 0.5]
 

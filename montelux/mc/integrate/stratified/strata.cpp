@@ -254,7 +254,7 @@ std::vector<std::uint64_t> allocate_samples(std::uint64_t strata, std::uint64_t 
 std::uint64_t next_pass_size(std::uint64_t done, const StepRequest& request) {
     constexpr std::uint64_t limited = std::uint64_t{1} << 50, large = 1 << 20, largest = 1 << 24;
     const std::uint64_t most = std::clamp(done / 10, large, largest), limit = request.max_evaluations;
-    const bool to_the_end = request.relative_error == 0 && request.absolute_error == 0 && limit < limited;
+    const bool to_the_end = !request.targeted() && limit < limited;
     const std::uint64_t size = to_the_end ? most : done == 0 ? 4096 : std::min(done, most);
     // Leaves no small rest.
     return limit < 2 * size ? std::min(limit, 2 * most) : size;

@@ -31,6 +31,7 @@ enum class Allocation : std::uint8_t {
 // averaged with weights N^(1 + 2/n) that are fixed beforehand (for a grid that is given: N).
 struct Stratified {
     static constexpr std::string_view name = "stratified";
+    static constexpr FirstLookUse first_look = FirstLookUse::with_target;
 
     std::uint64_t strata = 0; // along each variable
     Allocation allocation = Allocation::proportional;

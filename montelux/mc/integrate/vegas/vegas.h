@@ -25,6 +25,7 @@ namespace montelux {
 // Vector-valued integrands are trained on the sum of squared components, each relative to its mean square.
 struct Vegas {
     static constexpr std::string_view name = "vegas";
+    static constexpr FirstLookUse first_look = FirstLookUse::always;
     static constexpr bool on_device = true;
 
     enum class Points : std::uint8_t {
@@ -59,6 +60,7 @@ struct Vegas {
 // Vegas on Sobol' points, under a name of its own.
 struct VegasSobol {
     static constexpr std::string_view name = "vegas_sobol";
+    static constexpr FirstLookUse first_look = FirstLookUse::always;
     static constexpr bool on_device = true;
 
     Vegas settings = {};

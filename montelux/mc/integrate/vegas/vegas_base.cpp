@@ -145,7 +145,7 @@ void VegasEstimator::plan(VegasState& next, const StepRequest& request) const {
     if (size == 0) {
         size = default_training(problem_.evaluator.dimensions());
         // Without a target error, training takes a twentieth of the evaluations.
-        if (request.relative_error == 0 && request.absolute_error == 0)
+        if (!request.targeted())
             size = std::max(size, std::min<std::uint64_t>(budget / (20 * iterations), 1 << 15));
     }
     next.training_size = std::max(needed, std::min(size, next.training_limit / iterations));

@@ -20,11 +20,12 @@ MixtureSums sums_of(double value, double spread, std::uint64_t n, int components
     sums.channels = {{n * replicate_count, value * count * replicate_count, 0}};
     return sums;
 }
-// Standard error of the mean of what sums_of() makes with a spread of 1.
+// Standard error of the mean of what sums_of() makes with a spread of 1, and one standard deviation of that error above.
 double unit_error() {
+    const double caution = 1 + 1 / std::sqrt(2.0 * (replicate_count - 1));
     double squares = 0;
     for (int r = 0; r < replicate_count; ++r) squares += std::pow(2.0 * r / (replicate_count - 1) - 1, 2);
-    return std::sqrt(squares / (replicate_count - 1) / replicate_count);
+    return caution * std::sqrt(squares / (replicate_count - 1) / replicate_count);
 }
 Tally tally_of(const MixtureEstimate& estimate) {
     Tally tally;

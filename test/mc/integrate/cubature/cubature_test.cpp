@@ -40,7 +40,9 @@ TEST_P(CubatureGoal, IsHonestWithinTheEvaluations) {
     }
     std::ranges::sort(evaluations);
     const std::uint64_t check = goal.line.dimensions == 1 ? 128 : 4096;
-    EXPECT_LE(evaluations[5], goal.median + check);
+    // The first look; and where many regions are compared with it, some halvings more.
+    const std::uint64_t look = goal.line.dimensions == 1 ? 24 : 200 + 50 * goal.line.dimensions;
+    EXPECT_LE(evaluations[5], goal.median + goal.median / 8 + check + look);
 }
 
 INSTANTIATE_TEST_SUITE_P(
@@ -52,8 +54,8 @@ INSTANTIATE_TEST_SUITE_P(
                     Goal{{Family::corner_peak, 5}, 1e-4, 9400}, Goal{{Family::gaussian, 5}, 1e-3, 9800},
                     Goal{{Family::oscillatory, 8}, 1e-4, 3900}, Goal{{Family::corner_peak, 8}, 1e-3, 8400},
                     Goal{{Family::gaussian, 8}, 1e-3, 50000}, Goal{{Family::sine, 1}, 1e-4, 7},
-                    Goal{{Family::exponential, 1}, 1e-4, 13}, Goal{{Family::quadratic, 1}, 1e-4, 7},
-                    Goal{{Family::inverse_root, 1}, 1e-4, 800}, Goal{{Family::jump, 1}, 1e-4, 500},
+                    Goal{{Family::exponential, 1}, 1e-4, 68}, Goal{{Family::quadratic, 1}, 1e-4, 19},
+                    Goal{{Family::inverse_root, 1}, 1e-4, 1150}, Goal{{Family::jump, 1}, 1e-4, 500},
                     Goal{{Family::two_peaks, 4}, 1e-3, 130000}, Goal{{Family::ridge, 4}, 1e-3, 161000}),
     [](const auto& goal) {
         std::string name = bench::line_name(goal.param.line);
@@ -140,7 +142,7 @@ void expect_same_bits_when_stopped(const BenchIntegrand& f, std::uint64_t evalua
         if (r.evaluations >= stop) cancel.request();
     };
     const IntegrationResult part = run(f, 0, evaluations, options);
-    EXPECT_EQ(part.stop, StopReason::cancelled);
+    EXPECT_EQ(part.stop, StopReason::interrupted);
     EXPECT_LT(part.evaluations, whole.evaluations);
     options.cancel = nullptr;
     options.progress = nullptr;
@@ -164,9 +166,9 @@ TEST(Cubature, OneVariableBeginsWithFewPoints) {
         const IntegrationResult r = run(f, error, 1000);
         EXPECT_TRUE(r.converged());
         EXPECT_LE(std::abs(r.value[0] - f.exact()), error * std::abs(f.exact()));
-        return r.evaluations - 128; // the check
+        return r.evaluations - 128 - 24; // the check and the first look
     };
-    EXPECT_EQ(evaluations(BenchIntegrand({Family::quadratic, 1}, 1), 1e-12), 7u);
+    EXPECT_EQ(evaluations(BenchIntegrand({Family::quadratic, 1}, 1), 1e-10), 13u);
     EXPECT_EQ(evaluations(BenchIntegrand({Family::sine, 1}, 1), 1e-4), 7u);
     EXPECT_EQ(evaluations(BenchIntegrand({Family::sine, 1}, 1), 1e-10), 13u);
     EXPECT_EQ(evaluations(BenchIntegrand({Family::exponential, 1}, 1), 1e-4), 13u);
@@ -322,7 +324,7 @@ TEST(Cubature, ValuesThatAreNotFiniteAreNoConvergence) {
     // Without a limit, too, it ends.
     const IntegrationResult ended =
         integrate([](double x) { return 1 / x; }, Domain::interval(-1, 1), Auto{}, {.absolute_error = 1e-6});
-    EXPECT_EQ(ended.stop, StopReason::finished) << ended;
+    EXPECT_EQ(ended.stop, StopReason::diverges) << ended;
     EXPECT_FALSE(ended.converged());
     // A gap in a smooth function is found to be one, and a part that is not finite everywhere is left out.
     const IntegrationResult gap = integrate([](double x) { return std::sin(x) / x; }, Domain::interval(-1, 1),
@@ -362,9 +364,8 @@ TEST(Cubature, TheUnitOfTheIntegrandDoesNotMatter) {
         EXPECT_TRUE(r.converged()) << size;
         evaluations.push_back(r.evaluations);
     }
-    // Units far from 1 repeat the first region, in which they show.
-    EXPECT_EQ(evaluations[1], evaluations[0] + 65);
-    EXPECT_EQ(evaluations[2], evaluations[0] + 65);
+    EXPECT_EQ(evaluations[1], evaluations[0]);
+    EXPECT_EQ(evaluations[2], evaluations[0]);
 }
 
 } // namespace

@@ -1,0 +1,170 @@
+#include "montelux/mc/integrate/witness/evidence.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <utility>
+
+#include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/integrate/trained/unit_density.h"
+#include "montelux/mc/integrate/witness/pole_search.h"
+
+namespace montelux {
+namespace {
+
+constexpr double far_above = 32; // times the mean of |g|: a value that is examined
+constexpr std::uint64_t most_of_examination = 600; // evaluations, for each variable and one more
+
+// Integral of |g|, or what is known of it.
+double size_of(const Tally& tally, std::size_t c) {
+    const double known = c < tally.absolute.size() ? tally.absolute[c] : 0;
+    return std::max({known, std::abs(tally.value[c]),
+                     std::isfinite(tally.standard_error[c]) ? tally.standard_error[c] : 0.0});
+}
+
+void save_witness(StateWriter& state, const Witness& w) {
+    state.put(w.u);
+    state.put(w.value);
+    state.put(w.volume);
+    state.put(w.extent);
+}
+
+Witness load_witness(StateReader& state) {
+    Witness w;
+    w.u = state.get_doubles();
+    w.value = state.get_doubles();
+    w.volume = state.get_double();
+    w.extent = state.get_doubles();
+    return w;
+}
+
+} // namespace
+
+Evidence::Evidence(Evaluator& evaluator, std::uint64_t seed)
+    : evaluator_(evaluator), seed_(seed), largest_(evaluator.components()),
+      examined_(static_cast<std::size_t>(evaluator.components())) {
+    evaluator_.keep_largest(&largest_);
+}
+
+Evidence::~Evidence() { evaluator_.keep_largest(nullptr); }
+
+void Evidence::look(std::span<const double> landmarks, std::uint64_t most_evaluations) {
+    look_ = first_look(evaluator_, {landmarks, most_evaluations, seed_});
+    evaluations_ += look_.evaluations;
+    divergence_ = look_.divergence;
+    largest_.clear();
+    std::ranges::fill(examined_, Examined());
+}
+
+void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
+    const std::uint64_t cost = most_of_examination * static_cast<std::uint64_t>(evaluator_.dimensions() + 1);
+    std::uint64_t left = most_evaluations;
+    if (!divergence_.empty()) return;
+    for (const Witness& witness : largest_.witnesses())
+        for (std::size_t c = 0; c < examined_.size(); ++c) {
+            Examined& known = examined_[c];
+            const double value = std::abs(witness.value[c]);
+            if (!(value > 1.01 * known.size) || !(value > far_above * size_of(tally, c))) continue;
+            if (left < cost) return;
+            left -= cost;
+            RawValues raw(evaluator_);
+            const Magnitude magnitude = [c](const std::vector<double>& row) { return std::abs(row[c]); };
+            Witness peak = witness;
+            measure(raw, peak, magnitude);
+            look_.peaks.push_back(std::move(peak));
+            const PoleReport pole = search_pole(raw, witness, c);
+            known = {pole.u, value, pole.unresolved};
+            if (pole.diverges && divergence_.empty()) divergence_ = place(pole.u);
+            evaluations_ += raw.evaluations();
+        }
+}
+
+std::string Evidence::place(std::span<const double> at) const {
+    const Domain& domain = evaluator_.domain();
+    PointBuffer u(1, evaluator_.dimensions()), x(1, domain.dimensions());
+    for (int d = 0; d < u.dimensions(); ++d) u(0, d) = at[static_cast<std::size_t>(d)];
+    std::array<double, 1> volume{1};
+    domain.map(u, x, volume);
+    std::string text = domain.dimensions() > 1 ? "(" : "";
+    constexpr int most = 8;
+    for (int d = 0; d < std::min(most, domain.dimensions()); ++d) {
+        std::array<char, 32> number;
+        std::snprintf(number.data(), number.size(), "%s%.6g", d > 0 ? ", " : "", x.view()(0, d));
+        text += number.data();
+    }
+    if (domain.dimensions() > most) text += ", ...";
+    return "x -> " + text + (domain.dimensions() > 1 ? ")" : "");
+}
+
+void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tally& tally) const {
+    const double points = static_cast<double>(tally.evaluations);
+    auto q_at = [&](const std::vector<double>& u) {
+        if (!density) return 1.0;
+        PointBuffer at(1, static_cast<int>(u.size()));
+        for (std::size_t d = 0; d < u.size(); ++d) at(0, static_cast<int>(d)) = u[d];
+        std::array<double, 1> q{1};
+        density->pdf(at, q);
+        return q[0];
+    };
+    std::vector<double> least(tally.standard_error);
+    for (std::size_t c = 0; c < tally.value.size(); ++c) {
+        const double tolerance = std::max(request.tolerance(c, tally.value[c]), tally.standard_error[c]);
+        double worst = 0;
+        const Witness* where = nullptr;
+        for (const Witness& p : look_.peaks) {
+            if (!tally.statistical) break; // rules are compared with every witness
+            const double mass = unexplained(p.value[c], p.volume, q_at(p.u), points, size_of(tally, c));
+            if (mass > worst) worst = mass, where = &p;
+        }
+        std::array<char, 200> text;
+        if (where && worst > tolerance) {
+            std::snprintf(text.data(), text.size(),
+                          "a peak at %s, seen but hardly sampled, may hold %.2g or more of the integral",
+                          place(where->u).substr(5).c_str(), worst);
+            tally.warnings.emplace_back(text.data());
+        }
+        const double unresolved = examined_[c].unresolved;
+        if (unresolved > tolerance) {
+            std::snprintf(text.data(), text.size(),
+                          "about %.2g of the integral lies closer to the pole at %s than doubles can tell",
+                          unresolved, place(examined_[c].u).substr(5).c_str());
+            tally.warnings.emplace_back(text.data());
+            least[c] += unresolved;
+        }
+    }
+    raise_standard_errors(least, tally);
+}
+
+void Evidence::save(StateWriter& state) const {
+    largest_.save(state);
+    state.put(evaluations_);
+    state.put(std::string_view(divergence_));
+    state.put(static_cast<std::uint64_t>(look_.witnesses.size()));
+    for (const Witness& w : look_.witnesses) save_witness(state, w);
+    state.put(static_cast<std::uint64_t>(look_.peaks.size()));
+    for (const Witness& p : look_.peaks) save_witness(state, p);
+    state.put(look_.evaluations);
+    for (const Examined& e : examined_) {
+        state.put(e.u);
+        state.put(e.size);
+        state.put(e.unresolved);
+    }
+}
+
+void Evidence::load(StateReader& state) {
+    largest_.load(state);
+    evaluations_ = state.get_word();
+    divergence_ = state.get_text();
+    look_ = {};
+    for (std::uint64_t n = state.get_word(); n > 0; --n) look_.witnesses.push_back(load_witness(state));
+    for (std::uint64_t n = state.get_word(); n > 0; --n) look_.peaks.push_back(load_witness(state));
+    look_.evaluations = state.get_word();
+    for (Examined& e : examined_) {
+        e.u = state.get_doubles();
+        e.size = state.get_double();
+        e.unresolved = state.get_double();
+    }
+}
+
+} // namespace montelux

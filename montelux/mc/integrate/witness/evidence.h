@@ -1,0 +1,58 @@
+// Evidence of a run: what it saw before its first step, the largest values since, and what they say of its result.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/estimator.h"
+#include "montelux/mc/integrate/witness/first_look.h"
+#include "montelux/mc/integrate/witness/largest_values.h"
+
+namespace montelux {
+
+class Evidence {
+  public:
+    // Watches the values of the evaluator, which outlives it.
+    Evidence(Evaluator& evaluator, std::uint64_t seed);
+    ~Evidence();
+    Evidence(const Evidence&) = delete;
+    Evidence& operator=(const Evidence&) = delete;
+
+    // Takes the first look, with at most so many evaluations; forgets an earlier one, whose evaluations still count.
+    void look(std::span<const double> landmarks, std::uint64_t most_evaluations);
+    // With the peaks that were examined since.
+    const FirstLook& seen() const { return look_; }
+    std::uint64_t evaluations() const { return evaluations_; }
+
+    // Searches around the largest values of a run for poles, and measures their peaks, if these values are new and far
+    // above their mean. At most `most_evaluations`.
+    void examine(const Tally& tally, std::uint64_t most_evaluations);
+    // Where the integral does not exist, or converges too slowly to tell; empty if it seems to exist.
+    const std::string& divergence() const { return divergence_; }
+    // Raises errors by what doubles do not resolve at poles, and warns of it and of peaks that points of `density` (null:
+    // uniform points) do not explain.
+    void judge(const UnitDensity* density, const StepRequest& request, Tally& tally) const;
+
+    void save(StateWriter& state) const;
+    void load(StateReader& state);
+
+  private:
+    // Of the largest value of a component.
+    struct Examined {
+        std::vector<double> u; // empty before the first examination
+        double size = 0, unresolved = 0;
+    };
+    std::string place(std::span<const double> u) const;
+
+    Evaluator& evaluator_;
+    std::uint64_t seed_;
+    LargestValues largest_;
+    FirstLook look_;
+    std::vector<Examined> examined_; // one per component
+    std::string divergence_;
+    std::uint64_t evaluations_ = 0;
+};
+
+} // namespace montelux

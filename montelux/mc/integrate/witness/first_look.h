@@ -1,0 +1,40 @@
+// The first look of a run: the integrand at points by scales, around the places where peaks and poles usually lie.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/evaluator.h"
+#include "montelux/mc/integrate/witness/peak.h"
+
+namespace montelux {
+
+struct FirstLook {
+    // Points with finite values; the volume is that of the shell in which a point lies.
+    std::vector<Witness> witnesses;
+    // Tops that stand far above the others. Along each variable |g| stays above a half of its value there within
+    // `volume`, a box; where variables are correlated the box is smaller than the peak.
+    std::vector<Witness> peaks;
+    // Where the mass of |g| in dyadic shells does not fall, as "x -> 0"; empty where it falls everywhere.
+    std::string divergence;
+    std::uint64_t evaluations = 0;
+    double seconds = 0; // wall time of the evaluations
+};
+
+struct LookSettings {
+    // Coordinates at which a feature may lie, in any variable: the numbers of a formula.
+    std::span<const double> landmarks = {};
+    std::uint64_t most_evaluations = 1024;
+    std::uint64_t seed = 0;
+};
+
+// Points at distances of 2^-3 to 2^-50 of the cube's width from its corners and its centre, from the origin and
+// from the landmarks: all variables at a time, then each by itself through the greatest value. What stands out is
+// climbed along each variable and its widths are measured. 24 evaluations in one variable if there are no
+// landmarks and nothing stands out; about 100 + 30 n in n. A value that is not finite is no error here: an infinite
+// one counts as a shell that grows, NaN as nothing.
+FirstLook first_look(const Evaluator& evaluator, const LookSettings& settings = {});
+
+} // namespace montelux

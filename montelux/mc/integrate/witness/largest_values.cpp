@@ -1,0 +1,69 @@
+#include "montelux/mc/integrate/witness/largest_values.h"
+
+#include <cmath>
+#include <utility>
+
+#include "montelux/mc/math/error.h"
+
+namespace montelux {
+
+LargestValues::LargestValues(int components) : largest_(static_cast<std::size_t>(components)) {}
+
+void LargestValues::add(const PointBatch& u, const ValueBatch& g) {
+    for (std::size_t c = 0; c < largest_.size(); ++c) {
+        const std::span<const double> values = g.component(static_cast<int>(c));
+        double size = 0;
+        for (double v : values) size = std::max(size, std::abs(v));
+        Largest& known = largest_[c];
+        if (size == 0 || size < known.size.load(std::memory_order_relaxed)) continue;
+        std::size_t at = 0;
+        while (std::abs(values[at]) != size) ++at;
+        Witness witness{std::vector<double>(static_cast<std::size_t>(u.dimensions())),
+                        std::vector<double>(largest_.size())};
+        u.gather(at, witness.u.data());
+        for (std::size_t k = 0; k < largest_.size(); ++k) witness.value[k] = g(at, static_cast<int>(k));
+        const std::lock_guard lock(mutex_);
+        const double greatest = known.size.load(std::memory_order_relaxed);
+        if (size < greatest || (size == greatest && known.witness.u <= witness.u)) continue;
+        known.witness = std::move(witness);
+        known.size.store(size, std::memory_order_relaxed);
+    }
+}
+
+std::vector<Witness> LargestValues::witnesses() const {
+    const std::lock_guard lock(mutex_);
+    std::vector<Witness> seen;
+    for (const Largest& l : largest_)
+        if (l.size > 0) seen.push_back(l.witness);
+    return seen;
+}
+
+void LargestValues::clear() {
+    const std::lock_guard lock(mutex_);
+    for (Largest& l : largest_) {
+        l.size = 0;
+        l.witness = {};
+    }
+}
+
+void LargestValues::save(StateWriter& state) const {
+    const std::lock_guard lock(mutex_);
+    for (const Largest& l : largest_) {
+        state.put(l.size.load());
+        state.put(l.witness.u);
+        state.put(l.witness.value);
+    }
+}
+
+void LargestValues::load(StateReader& state) {
+    const std::lock_guard lock(mutex_);
+    for (Largest& l : largest_) {
+        l.size = state.get_double();
+        l.witness.u = state.get_doubles();
+        l.witness.value = state.get_doubles();
+        if (!l.witness.value.empty() && l.witness.value.size() != largest_.size())
+            throw Error("the saved state has another number of components");
+    }
+}
+
+} // namespace montelux

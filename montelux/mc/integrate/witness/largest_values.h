@@ -1,0 +1,47 @@
+// The largest values that a run has seen, which whatever it claims must explain.
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <mutex>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/points.h"
+#include "montelux/mc/integrate/state_archive.h"
+
+namespace montelux {
+
+// A point of the unit cube and the values g there, one per component.
+struct Witness {
+    std::vector<double> u, value;
+    double volume = 1; // of the part of the cube that it may speak for
+    // Of the top of a peak: half of the width within which |g| stays above a half, along each variable.
+    std::vector<double> extent = {};
+};
+
+// For each component the point with the largest |g| of all evaluations. Safe to use from several threads; the same
+// points give the same witnesses in any order, as the first in lexicographic order counts among equal values.
+class LargestValues {
+  public:
+    explicit LargestValues(int components);
+
+    // Values are finite.
+    void add(const PointBatch& u, const ValueBatch& g);
+    // One per component that was ever other than zero.
+    std::vector<Witness> witnesses() const;
+    void clear();
+
+    void save(StateWriter& state) const;
+    void load(StateReader& state);
+
+  private:
+    struct Largest {
+        std::atomic<double> size = 0; // |g| of the witness, read without the lock
+        Witness witness;
+    };
+    std::vector<Largest> largest_;
+    mutable std::mutex mutex_;
+};
+
+} // namespace montelux

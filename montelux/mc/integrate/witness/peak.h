@@ -1,0 +1,33 @@
+// Peaks around witnesses: their widths, and whether samples can have seen them.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/witness/largest_values.h"
+#include "montelux/mc/integrate/witness/raw_values.h"
+
+namespace montelux {
+
+// Factor of all distances of looks: integrands have features at powers of two.
+inline constexpr double off_grid = 0.9;
+// From u to the end of the cube on a side.
+inline double reach(double u, double side) { return side > 0 ? 1 - u : u; }
+
+// One number for a row of components.
+using Magnitude = std::function<double(const std::vector<double>& values)>;
+
+// The greatest value at distances of all scales, along one variable after the other: 26 n evaluations.
+Witness climb(RawValues& raw, Witness top, const Magnitude& magnitude);
+// Measures the extents of a peak and its volume, the box within which the magnitude stays above a half, by bisection of
+// the exponents of the distances on each side: 12 n evaluations, a few more where the top is close to the origin of the cube.
+void measure(RawValues& raw, Witness& top, const Magnitude& magnitude);
+
+// Lower bound on the integral of |g| over a peak of this value that points of density q have hardly seen: fewer than
+// eight of `points` are expected within its volume, although the weight |g| / q there is far above `size`, the
+// integral of |g| as claimed. 0 where the points explain the peak.
+double unexplained(double value, double volume, double q, double points, double size);
+
+} // namespace montelux

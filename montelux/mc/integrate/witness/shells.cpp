@@ -1,0 +1,62 @@
+#include "montelux/mc/integrate/witness/shells.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace montelux {
+namespace {
+
+constexpr std::size_t shells = 12; // of each of the two ranges that are compared
+// Shells of the outer and of the inner range, in units of the finest exponent.
+constexpr double outer_from = 0.35, outer_to = 0.5, inner_from = 0.75, inner_to = 1;
+// Ratio of the means for masses that fall like 1 / k.
+constexpr double harmonic = (outer_from + outer_to) / (inner_from + inner_to);
+constexpr double noise = 0.93;     // factor for masses that oscillate
+constexpr double steady = 0.4;     // least ratio of the masses of the halves of the inner range
+constexpr double coarsest = 6;     // least exponent of the innermost shells
+constexpr double shrinking = 0.8;  // of the finest exponent, where values there are rounded to zero or infinity
+
+std::vector<double> exponents(double from, double to) {
+    std::vector<double> k;
+    for (std::size_t i = 0; i < shells; ++i)
+        k.push_back(from + (to - from) * static_cast<double>(i) / static_cast<double>(shells - 1));
+    return k;
+}
+
+} // namespace
+
+double finest_exponent(const Domain& domain, std::size_t d, double u) {
+    if (domain.ranges().empty()) return finest_inside;
+    const Range range = domain.ranges()[d];
+    const double width = range.upper - range.lower;
+    // At an end the distance itself has all its digits.
+    constexpr double end = 0x1p-60;
+    if (u < end && range.lower == 0) return finest_at_origin;
+    if (!std::isfinite(width)) return finest_inside;
+    const double x = range.lower + width * u;
+    return x == 0 ? finest_inside : std::clamp(finest_inside + std::log2(width / std::abs(x)), 4.0, finest_inside);
+}
+
+bool masses_diverge(const ShellValues& values, double finest, int codimension) {
+    if (finest < coarsest) return false;
+    const std::vector<double> outer = exponents(outer_from * finest, outer_to * finest);
+    const std::vector<double> inner = exponents(inner_from * finest, inner_to * finest);
+    const std::vector<double> g_outer = values(outer), g_inner = values(inner);
+    // Relative to the coarsest inner shell, so that the masses stay within the range of doubles.
+    auto mass = [&](double g, double k) { return g * std::exp2(codimension * (outer_to * finest - k)); };
+    double sum_outer = 0, sum_inner = 0, innermost = 0;
+    bool rounded = false;
+    for (std::size_t i = 0; i < shells; ++i) {
+        if (std::isnan(g_outer[i]) || std::isnan(g_inner[i])) return false;
+        rounded = rounded || std::isinf(mass(g_inner[i], inner[i])) || g_inner[i] == 0;
+        sum_outer += mass(g_outer[i], outer[i]);
+        sum_inner += mass(g_inner[i], inner[i]);
+        if (i >= shells / 2) innermost += mass(g_inner[i], inner[i]);
+    }
+    // Infinite or zero by overflow or rounding: the shells before tell.
+    if (rounded) return masses_diverge(values, shrinking * finest, codimension);
+    // Within the inner range, too: the outer one may lie beyond all that is there.
+    return sum_inner > 0 && sum_inner >= noise * harmonic * sum_outer && innermost >= steady * (sum_inner - innermost);
+}
+
+} // namespace montelux

@@ -1,0 +1,29 @@
+// Dyadic shells around a point: does the mass of |g| fall towards it?
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/domain.h"
+
+namespace montelux {
+
+// Exponents of the smallest distances that a look takes: inside of the cube, and from an end that is the origin, where
+// doubles are denser; squares of such distances are still doubles.
+inline constexpr double finest_inside = 46, finest_at_origin = 400;
+// The same around coordinate d = u of the unit cube: spacings of doubles, in u and in x, are far below the distance.
+double finest_exponent(const Domain& domain, std::size_t d, double u);
+
+// |g| at distances 2^-k from a point, k one of the exponents; infinite where g is, NaN where it is not a number.
+using ShellValues = std::function<std::vector<double>(std::span<const double> exponents)>;
+
+// Mass of a shell at distance r = 2^-k is |g| r^codimension. Its sum over k converges if the masses fall faster
+// than 1 / k (Cauchy's condensation of the integral): compares their mean over the inner shells, up to `finest`,
+// with that over shells of half their exponents, where 1 / k gives a ratio of a half. True where they do not fall.
+// Where inner values are infinite or zero, by overflow or rounding, coarser shells decide.
+bool masses_diverge(const ShellValues& values, double finest, int codimension);
+
+} // namespace montelux
