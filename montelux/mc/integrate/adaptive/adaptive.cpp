@@ -40,6 +40,9 @@ constexpr double narrow_peaks = 0.01;        // the same, where the search is th
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
 constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to converge
+// Points of an indicator that tell its error, and evaluations within which uniform points are expected to reach a target.
+constexpr std::uint64_t enough_hits = 64;
+constexpr double reach_of_indicators = 1 << 20;
 // Uniform points behind a claim in several variables: all of them miss a region of 1/5000 of the cube in 4 %
 // of cases.
 constexpr std::uint64_t plateau_evaluations = 16384;
@@ -233,7 +236,11 @@ class AdaptiveEstimator final : public Estimator {
 
     // Are uniform points expected to converge soon? Their error falls faster than 1 / n for what is smooth.
     bool uniform_will_do(const StepRequest& request) const {
-        if (!request.targeted() || trainer_.effective_share() < trusted_exploration) return false;
+        if (!request.targeted()) return false;
+        // A trained density cannot follow the jumps of an indicator, and costs far more time per point.
+        if (trainer_.flat_where_nonzero() && trainer_.nonzero() >= enough_hits)
+            return uniform_.expected_rest(request) <= reach_of_indicators;
+        if (trainer_.effective_share() < trusted_exploration) return false;
         const bool even = trainer_.effective_share() > flat;
         const double expected =
             even ? uniform_.expected_rest(request) + static_cast<double>(uniform_.evaluations())

@@ -16,6 +16,7 @@
 namespace montelux {
 namespace {
 
+constexpr double flat_share = 0.95;           // effective share of the points that are not zero
 constexpr double enough_even = 0.3;           // relative variance below which no Gaussians are added
 constexpr int first_fit_before_gaussians = 2; // rounds that maps alone are given
 constexpr int em_steps = 20;
@@ -75,6 +76,7 @@ void DensityTrainer::start(SamplePoints&& points) {
         squares += v * v;
     }
     effective_share_ = squares > 0 ? sum * sum / squares / static_cast<double>(h.size()) : 0;
+    flat_where_nonzero_ = nonzero_ > 0 && sum * sum > flat_share * squares * static_cast<double>(nonzero_);
     recent_.clear();
     recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
 }

@@ -26,6 +26,8 @@ class DensityTrainer {
     // |g|.
     std::uint64_t nonzero() const { return nonzero_; }
     double effective_share() const { return effective_share_; }
+    // Are values of one size wherever they are not zero, as those of indicators?
+    bool flat_where_nonzero() const { return flat_where_nonzero_; }
 
     // Searches for peaks until this many searches in a row lead to known ones; evaluations() counts the cost.
     void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless);
@@ -102,7 +104,7 @@ class DensityTrainer {
     WalkedPoints scouts_; // and of the last check
     std::vector<Check> checks_;
     int rounds_ = 0, walks_ = 0;
-    bool enriched_ = false;
+    bool enriched_ = false, flat_where_nonzero_ = false;
     double relative_variance_ = 0, effective_share_ = 0, uncovered_share_ = 0;
     std::uint64_t nonzero_ = 0, evaluations_ = 0;
     NonFiniteCount non_finite_;

@@ -13,7 +13,7 @@
 namespace montelux {
 namespace {
 
-constexpr double far_above = 32; // times the mean of |g|: a value that is examined
+constexpr double far_above = 32;                   // times the mean of |g|: a value that is examined
 constexpr std::uint64_t most_of_examination = 600; // evaluations, for each variable and one more
 
 // Integral of |g|, or what is known of it.

@@ -23,7 +23,7 @@ constexpr double suspicious = 0.2; // of the inner shells' masses beside the out
 constexpr double matters = 1e-3;   // of the greatest mass of a shell: a difference between two
 constexpr double outstanding = 16; // times the median of the look
 constexpr std::size_t most_peaks = 3;
-constexpr int most_climbed = 8;         // variables in which peaks are climbed and measured
+constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 constexpr std::size_t most_anchors = 16; // of a variable
 
 struct Anchor {
@@ -48,7 +48,8 @@ struct Path {
     // Of the shell around the anchor; `across`: widths in the variables that do not move.
     double volume(double exponent, const std::vector<double>& across) const {
         double product = 1;
-        for (std::size_t d = 0; d < side.size(); ++d) product *= side[d] != 0 ? reach[d] * std::exp2(-exponent) : across[d];
+        for (std::size_t d = 0; d < side.size(); ++d)
+            product *= side[d] != 0 ? reach[d] * std::exp2(-exponent) : across[d];
         return product;
     }
     Point at(double exponent) const {
@@ -90,7 +91,9 @@ class Look {
     bool affordable(std::size_t points) const {
         return raw_.evaluations() + points <= settings_.most_evaluations;
     }
-    double random() { return static_cast<double>(hash_key(settings_.seed, 0x6c6f6f6b, drawn_++) >> 11) * 0x1p-53; }
+    double random() {
+        return static_cast<double>(hash_key(settings_.seed, 0x6c6f6f6b, drawn_++) >> 11) * 0x1p-53;
+    }
 
     // Ends first, then the centre, the origin and the landmarks.
     std::vector<Anchor> anchors_of(std::size_t d) const {
@@ -110,8 +113,8 @@ class Look {
             std::array<double, 1> volume{1};
             domain.inverse(at, u, volume);
             const double here = u.view()(0, static_cast<int>(d));
-            const bool near = std::ranges::any_of(
-                anchors, [&](const Anchor& a) { return std::abs(a.u - here) < 0x1p-50; });
+            const bool near =
+                std::ranges::any_of(anchors, [&](const Anchor& a) { return std::abs(a.u - here) < 0x1p-50; });
             if (!near && here > 0 && here < 1) anchors.push_back({here, finest_exponent(domain, d, here)});
         }
         return anchors;
@@ -146,9 +149,13 @@ class Look {
                 const std::size_t count = anchors_[d].size();
                 const std::size_t which =
                     i < most ? std::min(i, count - 1)
-                             : std::min(count - 1, static_cast<std::size_t>(random() * static_cast<double>(count)));
+                             : std::min(count - 1,
+                                        static_cast<std::size_t>(random() * static_cast<double>(count)));
                 const Anchor anchor = anchors_[d][which];
-                const double side = anchor.u == 0 ? 1 : anchor.u == 1 ? -1 : i < most || random() < 0.5 ? 1 : -1;
+                const double side = anchor.u == 0                ? 1
+                                    : anchor.u == 1              ? -1
+                                    : i < most || random() < 0.5 ? 1
+                                                                 : -1;
                 path.anchors.push_back(anchor);
                 path.side.push_back(side);
                 // The first ones along diagonals, where ridges are; the others in directions of their own.
@@ -161,7 +168,8 @@ class Look {
                     if (path.anchors[d].u != 0 && path.anchors[d].u != 1) {
                         inside = true;
                         opposite.side[d] = -path.side[d];
-                        opposite.reach[d] = std::min(opposite.reach[d], reach(path.anchors[d].u, -path.side[d]));
+                        opposite.reach[d] =
+                            std::min(opposite.reach[d], reach(path.anchors[d].u, -path.side[d]));
                     }
                 if (inside) paths.push_back(std::move(opposite));
             }
@@ -189,7 +197,7 @@ class Look {
             }
         }
         const auto rows = raw_(points);
-        for (std::size_t i = 0; i < points.size(); ++i) keep(points[i], rows[i], volumes[i]);
+        for (std::size_t i = 0; i < points.size(); ++i) keep(points[i], rows[i], volumes[i], true);
         refine(paths, walked, rows, volumes);
         if (!tests || !look_.divergence.empty()) return;
         for (std::size_t p = 0; p < walked; ++p)
@@ -202,8 +210,8 @@ class Look {
 
     // Looks between shells of a ladder that differ by masses which matter: a rise or a peak may lie there. What lies
     // outside of 2^-8 other points see.
-    void refine(const std::vector<Path>& paths, std::size_t walked, const std::vector<std::vector<double>>& rows,
-                const std::vector<double>& volumes) {
+    void refine(const std::vector<Path>& paths, std::size_t walked,
+                const std::vector<std::vector<double>>& rows, const std::vector<double>& volumes) {
         double most = 0;
         for (std::size_t i = 0; i < rows.size(); ++i) most = std::max(most, size(rows[i]) * volumes[i]);
         for (std::size_t p = 0; p < walked; ++p)
@@ -220,7 +228,7 @@ class Look {
                 }
                 if (!affordable(between.size())) return;
                 const auto seen = raw_(between);
-                for (std::size_t j = 0; j < seen.size(); ++j) keep(between[j], seen[j], of_between[j]);
+                for (std::size_t j = 0; j < seen.size(); ++j) keep(between[j], seen[j], of_between[j], false);
             }
     }
 
@@ -229,7 +237,8 @@ class Look {
         std::vector<double> widths(n_, 1.0);
         for (std::size_t d = 0; d < n_; ++d)
             if (path.side[d] == 0)
-                for (const Anchor& a : anchors_[d]) widths[d] = std::min(widths[d], std::abs(path.anchors[d].u - a.u));
+                for (const Anchor& a : anchors_[d])
+                    widths[d] = std::min(widths[d], std::abs(path.anchors[d].u - a.u));
         return widths;
     }
 
@@ -240,7 +249,8 @@ class Look {
         const double finest = std::min(path.finest(), ladder.back());
         auto mass = [&](std::size_t i) {
             const double g = std::abs(rows[first + i][c]);
-            return std::isnan(g) ? 0 : g * std::exp2(-path.codimension() * ladder[i] * finest / ladder.back());
+            return std::isnan(g) ? 0
+                                 : g * std::exp2(-path.codimension() * ladder[i] * finest / ladder.back());
         };
         const double inner = std::max(mass(4), mass(5)), outer = std::max(mass(2), mass(3));
         return inner > 0 && (std::isinf(inner) || inner >= suspicious * outer);
@@ -262,7 +272,8 @@ class Look {
     bool diverges_at_infinity(const Path& path, std::size_t c) {
         const int codimension = path.codimension();
         PointBuffer u(1, static_cast<int>(n_)), x(1, static_cast<int>(n_));
-        for (std::size_t d = 0; d < n_; ++d) u(0, static_cast<int>(d)) = path.side[d] == 0 ? path.anchors[d].u : 0.5;
+        for (std::size_t d = 0; d < n_; ++d)
+            u(0, static_cast<int>(d)) = path.side[d] == 0 ? path.anchors[d].u : 0.5;
         std::array<double, 1> volume{1};
         raw_.evaluator().domain().map(u, x, volume);
         const ShellValues values = [&](std::span<const double> exponents) {
@@ -270,8 +281,9 @@ class Look {
             for (double k : exponents) {
                 points.emplace_back(n_);
                 for (std::size_t d = 0; d < n_; ++d)
-                    points.back()[d] = path.side[d] == 0 ? x.view()(0, static_cast<int>(d))
-                                                         : -path.side[d] * std::exp2(k) / (off_grid * path.reach[d]);
+                    points.back()[d] = path.side[d] == 0
+                                           ? x.view()(0, static_cast<int>(d))
+                                           : -path.side[d] * std::exp2(k) / (off_grid * path.reach[d]);
             }
             const auto rows = raw_.at(points);
             std::vector<double> g;
@@ -309,7 +321,8 @@ class Look {
         const Domain& domain = raw_.evaluator().domain();
         PointBuffer u(1, static_cast<int>(n_)), x(1, domain.dimensions());
         for (std::size_t d = 0; d < n_; ++d)
-            u(0, static_cast<int>(d)) = std::clamp(path.anchors[d].u, std::numeric_limits<double>::min(), 1 - 0x1p-53);
+            u(0, static_cast<int>(d)) =
+                std::clamp(path.anchors[d].u, std::numeric_limits<double>::min(), 1 - 0x1p-53);
         std::array<double, 1> volume{1};
         domain.map(u, x, volume);
         std::string place;
@@ -327,10 +340,12 @@ class Look {
         return domain.ranges().empty() ? place + " (variables of the unit cube)" : place;
     }
 
-    void keep(const Point& u, const std::vector<double>& row, double volume) {
+    // `ordinary`: a point of a ladder as it is, which tells what sizes values usually have.
+    void keep(const Point& u, const std::vector<double>& row, double volume, bool ordinary) {
         for (std::size_t c = 0; c < row.size(); ++c)
             if (!std::isfinite(row[c])) return;
         for (std::size_t c = 0; c < row.size(); ++c) largest_[c] = std::max(largest_[c], std::abs(row[c]));
+        if (ordinary) ordinary_.push_back(look_.witnesses.size());
         look_.witnesses.push_back({u, row, volume});
     }
     // Size of a value: the sum over components, each relative to the largest seen.
@@ -341,15 +356,15 @@ class Look {
         return std::isfinite(sum) ? sum : 0;
     }
     const Witness* best() const {
-        const auto top = std::ranges::max_element(
-            look_.witnesses, {}, [&](const Witness& w) { return size(w.value); });
+        const auto top =
+            std::ranges::max_element(look_.witnesses, {}, [&](const Witness& w) { return size(w.value); });
         return top == look_.witnesses.end() ? nullptr : &*top;
     }
 
     void find_peaks() {
-        if (look_.witnesses.empty() || n_ > most_climbed) return;
+        if (ordinary_.empty() || n_ > most_climbed) return;
         std::vector<double> sizes;
-        for (const Witness& w : look_.witnesses) sizes.push_back(size(w.value));
+        for (std::size_t i : ordinary_) sizes.push_back(size(look_.witnesses[i].value));
         std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
         const double median = sizes[sizes.size() / 2];
         std::vector<Witness> starts = look_.witnesses;
@@ -357,7 +372,8 @@ class Look {
         for (const Witness& start : starts) {
             if (look_.peaks.size() == most_peaks || !affordable(40 * n_)) break;
             if (!(size(start.value) > outstanding * median)) break;
-            if (std::ranges::any_of(look_.peaks, [&](const Witness& p) { return belongs(start, p); })) continue;
+            if (std::ranges::any_of(look_.peaks, [&](const Witness& p) { return belongs(start, p); }))
+                continue;
             const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
             Witness top = climb(raw_, start, magnitude);
             if (std::ranges::any_of(look_.peaks, [&](const Witness& p) { return belongs(top, p); })) continue;
@@ -382,7 +398,8 @@ class Look {
     LookSettings settings_;
     std::size_t n_;
     std::vector<std::vector<Anchor>> anchors_;
-    std::vector<double> largest_; // |g| of each component
+    std::vector<double> largest_;       // |g| of each component
+    std::vector<std::size_t> ordinary_; // witnesses
     std::uint64_t drawn_ = 0;
     FirstLook look_;
 };

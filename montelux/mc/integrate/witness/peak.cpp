@@ -9,7 +9,7 @@ namespace {
 
 constexpr double enough_points = 8; // all of them miss a peak with a probability of 3e-4
 constexpr double ordinary = 16;     // weights up to so many times their mean are explained by the density
-constexpr double part = 0.5;        // of value x volume, below the integral of any peak that falls monotonically
+constexpr double part = 0.5; // of value x volume, below the integral of any peak that falls monotonically
 
 } // namespace
 
@@ -47,7 +47,8 @@ void measure(RawValues& raw, Witness& top, const Magnitude& magnitude) {
         for (std::size_t i = 0; i < 2 * n; ++i) {
             const double side = i % 2 == 0 ? 1 : -1;
             points.push_back(top.u);
-            points.back()[i / 2] += side * reach(top.u[i / 2], side) * std::exp2(-0.5 * (inside[i] + outside[i]));
+            points.back()[i / 2] +=
+                side * reach(top.u[i / 2], side) * std::exp2(-0.5 * (inside[i] + outside[i]));
         }
         const auto rows = raw(points);
         for (std::size_t i = 0; i < 2 * n; ++i)

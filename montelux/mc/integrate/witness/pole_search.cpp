@@ -15,8 +15,8 @@ using Point = std::vector<double>;
 constexpr double first_step = 0x1p-5; // of the search for a pole
 constexpr double shift = 0.0123;      // of the lines beside it, of the cube's width
 constexpr double end = 0x1p-40;
-constexpr int most_steps = 120;       // of that search
-constexpr double coarse = 12;         // least exponent for an extrapolation
+constexpr int most_steps = 120; // of that search
+constexpr double coarse = 12;   // least exponent for an extrapolation
 constexpr int most_variables = 8;
 
 class PoleSearch {
@@ -60,9 +60,11 @@ class PoleSearch {
             finest = std::min({finest, finest_of_side(u, d, 1), finest_of_side(u, d, -1)});
         // A direction of its own in each variable.
         return masses_diverge(
-                   [&](std::span<const double> exponents) { return values(rays(u, exponents, 1)); }, finest, n) &&
+                   [&](std::span<const double> exponents) { return values(rays(u, exponents, 1)); }, finest,
+                   n) &&
                masses_diverge(
-                   [&](std::span<const double> exponents) { return values(rays(u, exponents, -1)); }, finest, n);
+                   [&](std::span<const double> exponents) { return values(rays(u, exponents, -1)); }, finest,
+                   n);
     }
 
     // The part of the integral along a line that lies within the finest distance, if the masses follow a power.
@@ -107,7 +109,9 @@ class PoleSearch {
         for (double k : exponents) {
             points.push_back(u);
             for (std::size_t d = 0; d < u.size(); ++d) {
-                const double own = (d % 2 == 0 ? side : -side) * (0.5 + 0.5 * std::fmod(0.6180339887498949 * static_cast<double>(d + 1), 1.0));
+                const double own =
+                    (d % 2 == 0 ? side : -side) *
+                    (0.5 + 0.5 * std::fmod(0.6180339887498949 * static_cast<double>(d + 1), 1.0));
                 points.back()[d] += own * std::min(u[d], 1 - u[d]) * std::exp2(-k);
             }
         }

@@ -11,10 +11,11 @@ constexpr std::size_t shells = 12; // of each of the two ranges that are compare
 constexpr double outer_from = 0.35, outer_to = 0.5, inner_from = 0.75, inner_to = 1;
 // Ratio of the means for masses that fall like 1 / k.
 constexpr double harmonic = (outer_from + outer_to) / (inner_from + inner_to);
-constexpr double noise = 0.93;     // factor for masses that oscillate
-constexpr double steady = 0.4;     // least ratio of the masses of the halves of the inner range
-constexpr double coarsest = 6;     // least exponent of the innermost shells
-constexpr double shrinking = 0.8;  // of the finest exponent, where values there are rounded to zero or infinity
+constexpr double noise = 0.93; // factor for masses that oscillate
+constexpr double steady = 0.4; // least ratio of the masses of the halves of the inner range
+constexpr double coarsest = 6; // least exponent of the innermost shells
+constexpr double shrinking =
+    0.8; // of the finest exponent, where values there are rounded to zero or infinity
 
 std::vector<double> exponents(double from, double to) {
     std::vector<double> k;
@@ -34,7 +35,8 @@ double finest_exponent(const Domain& domain, std::size_t d, double u) {
     if (u < end && range.lower == 0) return finest_at_origin;
     if (!std::isfinite(width)) return finest_inside;
     const double x = range.lower + width * u;
-    return x == 0 ? finest_inside : std::clamp(finest_inside + std::log2(width / std::abs(x)), 4.0, finest_inside);
+    return x == 0 ? finest_inside
+                  : std::clamp(finest_inside + std::log2(width / std::abs(x)), 4.0, finest_inside);
 }
 
 bool masses_diverge(const ShellValues& values, double finest, int codimension) {
@@ -56,7 +58,8 @@ bool masses_diverge(const ShellValues& values, double finest, int codimension) {
     // Infinite or zero by overflow or rounding: the shells before tell.
     if (rounded) return masses_diverge(values, shrinking * finest, codimension);
     // Within the inner range, too: the outer one may lie beyond all that is there.
-    return sum_inner > 0 && sum_inner >= noise * harmonic * sum_outer && innermost >= steady * (sum_inner - innermost);
+    return sum_inner > 0 && sum_inner >= noise * harmonic * sum_outer &&
+           innermost >= steady * (sum_inner - innermost);
 }
 
 } // namespace montelux

@@ -1,0 +1,161 @@
+#include <algorithm>
+#include <array>
+#include <atomic>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <vector>
+
+#include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/witness/largest_values.h"
+#include "montelux/mc/integrate/witness/peak.h"
+#include "montelux/mc/integrate/witness/pole_search.h"
+
+namespace montelux {
+namespace {
+
+TEST(LargestValues, KeepTheFirstOfTheLargestInAnyOrder) {
+    const std::array<double, 4> points{0.4, 0.1, 0.3, 0.2};
+    const std::array<double, 4> values{2, -5, 5, 1};
+    std::array<std::size_t, 4> order{0, 1, 2, 3};
+    do {
+        LargestValues largest(1);
+        for (std::size_t i : order) {
+            PointBuffer u(1, 1);
+            u(0, 0) = points[i];
+            ValueBuffer g(1, 1);
+            g.view()(0, 0) = values[i];
+            largest.add(u, g);
+        }
+        ASSERT_EQ(largest.witnesses().size(), 1u);
+        EXPECT_EQ(largest.witnesses()[0].u[0], 0.1); // of the two with |g| = 5
+        EXPECT_EQ(largest.witnesses()[0].value[0], -5);
+    } while (std::ranges::next_permutation(order).found);
+}
+
+TEST(Peak, MeasuresWidthsOnBothSides) {
+    const Evaluator evaluator(Integrand([](std::span<const double> x) {
+                                  return std::exp(-std::abs(x[0] - 0.25) / 1e-3) *
+                                         std::exp(-std::pow((x[1] - 0.5) / 1e-6, 2));
+                              }),
+                              Domain::unit_cube(2));
+    RawValues raw(evaluator);
+    Witness top{{0.25, 0.5}, {1.0}};
+    measure(raw, top, [](const std::vector<double>& row) { return row[0]; });
+    // To within an octave each: ln 2 1e-3, sqrt(ln 2) 1e-6.
+    EXPECT_NEAR(std::log2(top.extent[0] / 0.693e-3), 0, 1);
+    EXPECT_NEAR(std::log2(top.extent[1] / 0.833e-6), 0, 1);
+}
+
+TEST(Peak, IsExplainedByPointsOrByADensity) {
+    EXPECT_GT(unexplained(1e6, 1e-6, 1, 1000, 1e-3), 0);  // a thousandth of a point
+    EXPECT_EQ(unexplained(1e6, 1e-6, 1, 1e8, 1e-3), 0);   // a hundred points
+    EXPECT_EQ(unexplained(1e6, 1e-6, 1e6, 1000, 1.0), 0); // a density like the peak
+    EXPECT_EQ(unexplained(2, 1e-6, 1, 1000, 1.0), 0);     // no peak
+}
+
+PoleReport pole_of(const Integrand& f, int variables, const std::vector<double>& near) {
+    const Evaluator evaluator(f, Domain::unit_cube(variables));
+    RawValues raw(evaluator);
+    return search_pole(raw, {near, raw({near})[0]}, 0);
+}
+
+TEST(PoleSearch, TellsPolesOfPointsFromThoseOfSurfaces) {
+    auto power = [](double p) { return [p](double x) { return std::pow(std::abs(x - 0.3), -p); }; };
+    EXPECT_TRUE(pole_of(power(1), 1, {0.31}).diverges);
+    EXPECT_TRUE(pole_of(power(2), 1, {0.31}).diverges);
+    EXPECT_FALSE(pole_of(power(0.9), 1, {0.31}).diverges);
+    auto distance = [](double p) {
+        return [p](std::span<const double> x) { return std::pow(std::hypot(x[0] - 0.3, x[1] - 0.6), -p); };
+    };
+    EXPECT_FALSE(pole_of(distance(1), 2, {0.31, 0.6}).diverges);
+    EXPECT_FALSE(pole_of(distance(1.8), 2, {0.31, 0.6}).diverges);
+    EXPECT_TRUE(pole_of(distance(2), 2, {0.31, 0.6}).diverges);
+    auto line = [](double p) {
+        return [p](std::span<const double> x) { return std::pow(std::abs(x[0] - 0.7 * x[1]), -p); };
+    };
+    EXPECT_TRUE(pole_of(line(1), 2, {0.36, 0.5}).diverges);
+    EXPECT_FALSE(pole_of(line(0.8), 2, {0.36, 0.5}).diverges);
+}
+
+TEST(PoleSearch, EstimatesWhatDoublesDoNotResolve) {
+    const PoleReport r = pole_of([](double x) { return std::pow(std::abs(x - 1 / 3.), -0.9); }, 1, {0.334});
+    EXPECT_FALSE(r.diverges);
+    // 10 d^0.1 on either side, d from 2^-46 reach on.
+    EXPECT_NEAR(r.unresolved, 10 * (std::pow(0x1p-46 / 3, 0.1) + std::pow(0x1p-46 * 2 / 3, 0.1)), 0.1);
+    EXPECT_EQ(pole_of([](double x) { return std::exp(-x); }, 1, {0.4}).unresolved, 0);
+}
+
+TEST(Evidence, WithdrawsClaimsThatMissAPeak) {
+    // Half of the integral within 1e-6 of zero, which uniform points do not hit.
+    const auto f = [](std::span<const double> x) {
+        return 1 + 4 / 3.141592653589793 * 1e12 * std::exp(-1e12 * (x[0] * x[0] + x[1] * x[1]));
+    };
+    const IntegrationResult r =
+        integrate(f, Domain::unit_cube(2), Method::named("quasi"), {.relative_error = 1e-2});
+    EXPECT_FALSE(r.converged()) << r;
+    const IntegrationResult a = integrate(f, Domain::unit_cube(2), Method::named("adaptive"),
+                                          {.relative_error = 1e-2, .evaluations = 1'000'000});
+    if (a.converged()) {
+        EXPECT_NEAR(a.value[0], 2, 5 * a.standard_error[0]);
+    }
+}
+
+TEST(Evidence, DivergentIntegralsAreCalledSo) {
+    const Budget budget{.relative_error = 1e-2, .evaluations = 1'000'000};
+    const std::vector<double (*)(double)> poles{
+        [](double x) { return 1 / x; }, [](double x) { return std::pow(x, -1.5); },
+        [](double x) { return 1 / (1 - x); }, [](double x) { return 1 / ((x - 0.3) * (x - 0.3)); },
+        [](double x) { return 1 / (x - 0.61); }};
+    for (std::size_t i = 0; i < poles.size(); ++i)
+        for (const char* method : {"auto", "adaptive", "quasi"}) {
+            const IntegrationResult r =
+                integrate(Integrand(poles[i]), Domain::interval(0, 1), Method::named(method), budget);
+            EXPECT_EQ(r.stop, StopReason::diverges) << i << " " << method << " " << r;
+            EXPECT_FALSE(r.converged());
+            EXPECT_TRUE(std::isinf(r.standard_error[0]));
+        }
+    const auto line = [](std::span<const double> x) { return 1 / std::abs(x[0] - x[1]); };
+    EXPECT_EQ(integrate(line, Domain::unit_cube(2), Method(), budget).stop, StopReason::diverges);
+}
+
+TEST(Evidence, RelativeErrorsOfVectorsWithZeros) {
+    const Integrand moments = Integrand::vector_valued(3, [](std::span<const double> x, std::span<double> y) {
+        const double g = std::exp(-x[0] * x[0] - x[1] * x[1]);
+        y[0] = g;
+        y[1] = x[0] * g;
+        y[2] = x[0] * x[1] * g;
+    });
+    constexpr double inf = std::numeric_limits<double>::infinity();
+    const Domain plane({{-inf, inf}, {-inf, inf}});
+    for (const char* method : {"auto", "adaptive", "quasi"}) {
+        const IntegrationResult r =
+            integrate(moments, plane, Method::named(method), {.relative_error = 1e-2});
+        EXPECT_TRUE(r.converged()) << method << "\n" << r;
+        EXPECT_EQ(r.notes.size(), 2u) << method;
+        for (std::size_t c = 1; c < 3; ++c)
+            EXPECT_LE(std::abs(r.value[c]), 5 * r.standard_error[c] + 1e-12) << method;
+    }
+    const IntegrationResult norm =
+        integrate(moments, plane, Method(), {.relative_error = 1e-2, .norm = ErrorNorm::vector});
+    EXPECT_TRUE(norm.converged()) << norm;
+    EXPECT_TRUE(norm.notes.empty());
+}
+
+TEST(Evidence, TheLimitOfEvaluationsHolds) {
+    for (const char* name : {"auto", "adaptive", "cubature", "vegas", "vegas_sobol", "quasi", "basic"})
+        for (std::uint64_t limit : {600u, 5000u, 40'000u}) {
+            std::atomic<std::uint64_t> calls = 0;
+            const Integrand counted = Integrand::batch([&](const PointBatch& x, ValueBatch y) {
+                calls += x.count();
+                for (std::size_t i = 0; i < x.count(); ++i) y(i) = 1 / std::sqrt(x(i, 0) * x(i, 1));
+            });
+            const IntegrationResult r = integrate(counted, Domain::unit_cube(2), Method::named(name),
+                                                  {.relative_error = 1e-6, .evaluations = limit});
+            EXPECT_LE(r.evaluations, limit) << name;
+            EXPECT_LE(calls, limit) << name;
+        }
+}
+
+} // namespace
+} // namespace montelux

@@ -1,0 +1,122 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/infinity.h"
+#include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/integrate_log.h"
+#include "montelux/mc/integrate/witness/first_look.h"
+
+namespace montelux {
+namespace {
+
+FirstLook look_at(const Integrand& f, const Domain& domain, std::vector<double> landmarks = {}) {
+    return first_look(Evaluator(f, domain), {.landmarks = landmarks, .seed = 1});
+}
+
+TEST(FirstLook, CostsLittleWhereNothingStandsOut) {
+    const FirstLook look = look_at([](double x) { return std::sin(x); }, Domain::interval(0, 1.5));
+    EXPECT_EQ(look.evaluations, 24u);
+    EXPECT_TRUE(look.peaks.empty());
+    EXPECT_TRUE(look.divergence.empty());
+    const FirstLook three =
+        look_at([](std::span<const double> x) { return x[0] + x[1] * x[2]; }, Domain::unit_cube(3));
+    EXPECT_LT(three.evaluations, 400u);
+}
+
+TEST(FirstLook, FindsPeaksOfAnyWidthAtZeroAtEndsAndAtLandmarks) {
+    for (double width : {1.0, 1e-3, 1e3}) {
+        const FirstLook look = look_at([=](double x) { return std::exp(-x * x / (width * width)); },
+                                       Domain::interval(-1e6, 1e6));
+        ASSERT_EQ(look.peaks.size(), 1u) << width;
+        // Half of its height at 0.83 widths on either side.
+        EXPECT_NEAR(look.peaks[0].volume * 2e6 / width, 1.665, 1.0) << width;
+    }
+    EXPECT_EQ(look_at([](double x) { return std::exp(-1e4 * x); }, Domain::interval(0, 1)).peaks.size(), 1u);
+    const auto shifted = [](double x) { return std::exp(-(x - 777) * (x - 777)); };
+    EXPECT_TRUE(look_at(shifted, Domain::interval(-1e6, 1e6)).peaks.empty());
+    EXPECT_EQ(look_at(shifted, Domain::interval(-1e6, 1e6), {777}).peaks.size(), 1u);
+    const auto ball = [](std::span<const double> x) {
+        double squares = 0;
+        for (double v : x) squares += v * v;
+        return std::exp(-squares);
+    };
+    for (int n : {2, 5})
+        EXPECT_GE(
+            look_at(ball, Domain(std::vector<Range>(static_cast<std::size_t>(n), {-1e4, 1e4}))).peaks.size(),
+            1u);
+}
+
+TEST(FirstLook, TellsDivergenceAtEndsAndAtInfinity) {
+    EXPECT_EQ(look_at([](double x) { return 1 / x; }, Domain::interval(0, 1)).divergence, "x -> 0");
+    EXPECT_EQ(look_at([](double x) { return 1 / (1 + x); }, Domain::interval(0, infinity)).divergence,
+              "x -> inf");
+    EXPECT_EQ(look_at([](double x) { return std::exp(x); }, Domain::interval(0, infinity)).divergence,
+              "x -> inf");
+    EXPECT_EQ(
+        look_at([](double x) { return x / (1 + x * x); }, Domain::interval(-infinity, infinity)).divergence,
+        "x -> -inf");
+    EXPECT_FALSE(
+        look_at([](std::span<const double> x) { return std::cos(x[0]) / x[1]; }, Domain::unit_cube(2))
+            .divergence.empty());
+    EXPECT_TRUE(
+        look_at([](double x) { return std::pow(x, -0.99); }, Domain::interval(0, 1)).divergence.empty());
+    EXPECT_TRUE(look_at([](double x) { return std::pow(1 + x, -1.1); }, Domain::interval(0, infinity))
+                    .divergence.empty());
+    EXPECT_TRUE(
+        look_at([](std::span<const double> x) { return 1 / std::hypot(x[0], x[1]); }, Domain::unit_cube(2))
+            .divergence.empty());
+}
+
+TEST(FirstLook, SurvivesValuesThatAreNotFinite) {
+    const FirstLook none =
+        look_at([](double) { return std::numeric_limits<double>::quiet_NaN(); }, Domain::interval(0, 1));
+    EXPECT_TRUE(none.witnesses.empty());
+    EXPECT_TRUE(none.divergence.empty());
+}
+
+struct Wide {
+    const char* name;
+    double (*f)(double);
+    double half_width, exact;
+};
+
+class WideRanges : public testing::TestWithParam<Wide> {};
+
+// A peak at a face of cubature's regions lost a half, or all, of its integral.
+TEST_P(WideRanges, KeepTheirPeaks) {
+    const Wide wide = GetParam();
+    for (const char* method : {"auto", "cubature", "adaptive", "vegas", "quasi"}) {
+        const IntegrationResult r =
+            integrate(Integrand(wide.f), Domain::interval(-wide.half_width, wide.half_width),
+                      Method::named(method), {.relative_error = 1e-3, .evaluations = 2'000'000});
+        if (r.converged()) {
+            EXPECT_LE(std::abs(r.value[0] - wide.exact), 5 * r.standard_error[0] + 1e-9) << method;
+        }
+        if (method == std::string("auto")) {
+            EXPECT_TRUE(r.converged()) << r;
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Typed, WideRanges,
+    testing::Values(Wide{"exponential", [](double x) { return std::exp(-std::abs(x)); }, 3e4, 2},
+                    Wide{"gaussian", [](double x) { return std::exp(-x * x); }, 1e4, 1.7724538509055159},
+                    Wide{"gaussian_farther", [](double x) { return std::exp(-x * x); }, 1e5,
+                         1.7724538509055159},
+                    Wide{"sech", [](double x) { return 1 / std::cosh(x); }, 1e4, 3.141592653589793},
+                    Wide{"spike", [](double x) { return 1 + 1e4 * std::exp(-1e4 * std::abs(x)); }, 1, 4}),
+    [](const auto& wide) { return wide.param.name; });
+
+TEST(FirstLook, LogarithmsOfWidePeaksAreFoundToo) {
+    const LogIntegrationResult r = integrate_log([](double x) { return -x * x; }, Domain::interval(-1e6, 1e6),
+                                                 Method(), {.relative_error = 1e-3});
+    EXPECT_TRUE(r.relative.converged());
+    EXPECT_NEAR(r.log_value, 0.5 * std::log(3.141592653589793), 4 * r.log_error + 1e-9);
+}
+
+} // namespace
+} // namespace montelux
