@@ -9,6 +9,7 @@
 
 # %%
 import math
+from pathlib import Path
 
 import numpy as np
 
@@ -326,6 +327,8 @@ print("equal, to the last bit:", one.value == two.value, "- another seed:", one.
 # a finished run can be resumed for a smaller error. `to_dict` is ready for JSON.
 
 # %%
+for old in Path().glob("run.state*"):
+    old.unlink()  # a run does not overwrite the state of another
 first = montelux.integrate(bump, cube, "quasi", relative_error=1e-2, seed=3, checkpoint="run.state")
 more = montelux.integrate(bump, cube, "quasi", relative_error=1e-3, seed=3, checkpoint="run.state", resume=True)
 whole = montelux.integrate(bump, cube, "quasi", relative_error=1e-3, seed=3)

@@ -29,7 +29,7 @@ constexpr double largest_first = 0.25; // share of a fixed number of evaluations
 // With so few evaluations left, in regions, the first one decides: cubature is given up where not even errors
 // falling by this power of the evaluations would do.
 constexpr double few_regions = 32, hopeful_rate = 2;
-constexpr double patience_of_one = 100; // factor of the evaluations that rules may need in one variable
+constexpr double patience_of_one = 100;   // factor of the evaluations that rules may need in one variable
 constexpr std::uint64_t patience = 60000; // evaluations of sampling before cubature gets a second chance,
 constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
 // A localised result is compared with sampling at a multiple of the target, within these relative errors.
@@ -166,8 +166,7 @@ class AutoEstimator final : public Estimator {
         const Tally rule = cubature_->tally();
         bool arrived = rule.ready && rule.warnings.empty();
         for (std::size_t c = 0; c < rule.value.size(); ++c)
-            arrived = arrived &&
-                      rule.standard_error[c] <= request.tolerance(c, rule.value[c]);
+            arrived = arrived && rule.standard_error[c] <= request.tolerance(c, rule.value[c]);
         return arrived;
     }
 
@@ -179,7 +178,8 @@ class AutoEstimator final : public Estimator {
         bool agree = true;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
             const double error = sampled.standard_error[c];
-            if (!(error <= std::max(request.tolerance(c, rule.value[c]), comparable * rule.standard_error[c])))
+            if (!(error <=
+                  std::max(request.tolerance(c, rule.value[c]), comparable * rule.standard_error[c])))
                 return Agreement::unknown;
             agree = agree && std::abs(rule.value[c] - sampled.value[c]) <=
                                  disagreeing * std::hypot(error, rule.standard_error[c]);
@@ -317,7 +317,8 @@ class AutoEstimator final : public Estimator {
         const double rate = falling_rate(targeted ? 1 : cautious_rate);
         if (targeted) {
             // Rules are at their best in one variable.
-            const double alternative = sampling_cost(std::min(1.0, tightest)) * (one_variable() ? patience_of_one : 1);
+            const double alternative =
+                sampling_cost(std::min(1.0, tightest)) * (one_variable() ? patience_of_one : 1);
             if (spent < std::max(least_pilot, pilot_share * alternative)) return;
             const double needed = spent * std::pow(ratio, 1 / std::max(rate, 0.05));
             if (needed > alternative && one_variable() && tally.non_finite.count + tally.singular > 0 &&

@@ -16,10 +16,11 @@ namespace {
 constexpr double few = 16, few_of_all = 1 / 16.; // values that contribute most of a variance
 constexpr double all_equal = 1e-13;              // deviation over mean: rounding
 constexpr double infinite_variance = 0.5;        // shape from which there is none
-constexpr double heavy_shape = 0.4, heaviest_shape = 0.95; // of tails whose part beyond the largest value counts
-constexpr double shape_errors = 1.5;             // by which the fitted shape must exceed it
-constexpr int least_tail = 50;                   // points that must have been fitted
-constexpr double tail_share = 0.2;               // of the tail in the squared error, to matter
+constexpr double heavy_shape = 0.4,
+                 heaviest_shape = 0.95; // of tails whose part beyond the largest value counts
+constexpr double shape_errors = 1.5;    // by which the fitted shape must exceed it
+constexpr int least_tail = 50;          // points that must have been fitted
+constexpr double tail_share = 0.2;      // of the tail in the squared error, to matter
 
 } // namespace
 
@@ -130,7 +131,8 @@ double ExtremeValues::least_standard_error(int component, std::uint64_t values) 
 }
 
 double ExtremeValues::mean_magnitude(int component, std::uint64_t values) const {
-    return components_[static_cast<std::size_t>(component)].magnitudes / static_cast<double>(std::max<std::uint64_t>(values, 1));
+    return components_[static_cast<std::size_t>(component)].magnitudes /
+           static_cast<double>(std::max<std::uint64_t>(values, 1));
 }
 
 void ExtremeValues::save(StateWriter& state) const {

@@ -30,7 +30,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t default_evaluations = 1'000'000;
 constexpr std::uint64_t no_limit = ~std::uint64_t{0};
-constexpr std::uint64_t most_of_look = 1024; // evaluations,
+constexpr std::uint64_t most_of_look = 1024;  // evaluations,
 constexpr std::uint64_t share_of_look = 32;   // and one over the largest share of the limit
 constexpr std::uint64_t least_for_look = 512; // smaller limits leave no room for one
 // Evaluations after which the largest values are examined, and the factor of them until the next time.
@@ -68,8 +68,7 @@ class Run {
         : interruption_(options.cancel), f_(interruptible(f, interruption_)),
           scale_(f.components(), form, budget.absolute_error > 0, volume_exponent(domain)),
           evaluator_(scaled(f_, scale_), domain, options.non_finite), evidence_(evaluator_, options.seed),
-          budget_(budget), options_(options),
-          make_estimator_(method), method_(method.name()),
+          budget_(budget), options_(options), make_estimator_(method), method_(method.name()),
           targeted_(budget.relative_error > 0 || budget.absolute_error > 0) {
         check_request(budget, options);
         limit_ = budget.evaluations > 0                 ? budget.evaluations
@@ -132,7 +131,8 @@ class Run {
     // The first look, repeated until the scale is that of the values that it sees.
     std::optional<StopReason> look() {
         const FirstLookUse use = make_estimator_.first_look();
-        if (use == FirstLookUse::never || (use == FirstLookUse::with_target && !targeted_) || limit_ < least_for_look) {
+        if (use == FirstLookUse::never || (use == FirstLookUse::with_target && !targeted_) ||
+            limit_ < least_for_look) {
             if (budget_.absolute_error > 0) settle_scale();
             return std::nullopt;
         }
@@ -323,8 +323,8 @@ class Run {
         return request;
     }
 
-    // What a relative error refers to besides the values: their norm; or, of values that are zero within their errors,
-    // the integrals of the absolute values. Where a method does not know these, its error as of independent samples
+    // What a relative error refers to besides the values: their norm; or, of values of both signs that are zero within
+    // their errors, the integrals of the absolute values. Where a method does not know these, its error as of independent samples
     // tells a size that they exceed.
     std::vector<double> sizes(const Tally& tally) const {
         std::vector<double> all(tally.value.size(), 0.0);
@@ -337,10 +337,12 @@ class Run {
         }
         for (std::size_t c = 0; c < all.size(); ++c) {
             const double error = tally.standard_error[c];
-            if (!std::isfinite(error) || std::abs(tally.value[c]) > zero_within * error) continue;
+            if (!std::isfinite(error) || std::abs(tally.value[c]) > zero_within * error ||
+                !evidence_.cancels(c))
+                continue;
             all[c] = !tally.absolute.empty() ? tally.absolute[c]
-                     : tally.statistical    ? error * std::sqrt(static_cast<double>(tally.evaluations))
-                                            : 0;
+                     : tally.statistical     ? error * std::sqrt(static_cast<double>(tally.evaluations))
+                                             : 0;
         }
         return all;
     }
@@ -428,21 +430,27 @@ class Run {
                                  " values of the integrand were not finite and were left out, the first at " +
                                  point_text(r.first_non_finite_point));
         if (stop == StopReason::diverges) {
-            r.warnings = {"the integral diverges, or converges too slowly to tell: " + evidence_.divergence()};
+            r.warnings = {"the integral diverges, or converges too slowly to tell: " +
+                          evidence_.divergence()};
             std::ranges::fill(r.standard_error, std::numeric_limits<double>::infinity());
             std::ranges::fill(r.covariance, std::numeric_limits<double>::infinity());
         }
+        if (std::ranges::any_of(r.value, [](double v) { return std::isinf(v); }))
+            r.warnings.push_back("a value is beyond the range of double precision; integrate the logarithm");
         r.checkpoint_refused_because = checkpoint_refused_because_;
         r.seconds = elapsed();
         return r;
     }
 
-    void add_notes(const std::vector<double>& values, const std::vector<double>& errors, IntegrationResult& r) const {
+    void add_notes(const std::vector<double>& values, const std::vector<double>& errors,
+                   IntegrationResult& r) const {
         if (by_default_ && (r.stop == StopReason::time || r.stop == StopReason::evaluations)) {
             std::ostringstream text;
             text << "stopped at the default limit of "
-                 << (r.stop == StopReason::time ? Budget::default_seconds : double(Budget::default_most_evaluations))
-                 << (r.stop == StopReason::time ? " s" : " evaluations") << "; give a time or evaluations for another";
+                 << (r.stop == StopReason::time ? Budget::default_seconds
+                                                : double(Budget::default_most_evaluations))
+                 << (r.stop == StopReason::time ? " s" : " evaluations")
+                 << "; give a time or evaluations for another";
             r.notes.push_back(text.str());
         }
         if (r.stop != StopReason::error_target || budget_.norm == ErrorNorm::vector) return;
@@ -450,8 +458,9 @@ class Run {
         alone.sizes = {};
         for (std::size_t c = 0; c < r.value.size(); ++c)
             if (errors[c] > alone.tolerance(c, values[c]))
-                r.notes.push_back((r.value.size() > 1 ? "component " + std::to_string(c + 1) : "the value") +
-                                  " is zero within its error, whose target was measured against the integral of |f|");
+                r.notes.push_back(
+                    (r.value.size() > 1 ? "component " + std::to_string(c + 1) : "the value") +
+                    " is zero within its error, whose target was measured against the integral of |f|");
     }
 
     void save() const {
@@ -499,11 +508,11 @@ class Run {
     std::string method_;
     bool targeted_;
     std::uint64_t limit_ = 0;
-    bool by_default_ = false;                           // the limits are the default ones
-    std::vector<double> sizes_;                         // of the request of the last step
-    std::uint64_t lost_ = 0;                            // evaluations of discarded steps (time or scale)
+    bool by_default_ = false;                            // the limits are the default ones
+    std::vector<double> sizes_;                          // of the request of the last step
+    std::uint64_t lost_ = 0;                             // evaluations of discarded steps (time or scale)
     std::uint64_t next_examination_ = first_examination; // evaluations of the estimator
-    double rate_ = 0;                                   // evaluations per second in the last step
+    double rate_ = 0;                                    // evaluations per second in the last step
     std::uint64_t fingerprint_ = 0;
     std::string checkpoint_refused_because_;
     std::unique_ptr<Estimator> estimator_;

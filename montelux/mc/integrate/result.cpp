@@ -7,8 +7,8 @@
 namespace montelux {
 
 std::string_view to_string(StopReason reason) {
-    static constexpr std::array<std::string_view, 6> names{
-        "error_target", "evaluations", "time", "interrupted", "diverges", "finished"};
+    static constexpr std::array<std::string_view, 6> names{"error_target", "evaluations", "time",
+                                                           "interrupted",  "diverges",    "finished"};
     return names[static_cast<std::size_t>(reason)];
 }
 

@@ -122,6 +122,7 @@ class CubatureEstimator final : public Estimator {
             refined_ = !regions_.empty();
             correct_cube(regions_, fresh);
             regions_ = std::move(fresh);
+            verification_.revisit(regions_);
         } else {
             if (confirms) {
                 confirmation_.compare(regions_, parents, fresh, totals_.error());

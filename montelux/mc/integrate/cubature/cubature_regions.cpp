@@ -86,7 +86,8 @@ void CubatureRegions::copy(std::size_t to, const CubatureRegions& from, std::siz
 }
 
 void CubatureRegions::save(StateWriter& state) const {
-    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_, &difference_})
+    for (const auto* numbers :
+         {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_, &difference_})
         state.put(*numbers);
     for (const Face& f : faces_)
         for (double x : {f.value, f.slack, f.unseen}) state.put(x);
@@ -96,7 +97,8 @@ void CubatureRegions::save(StateWriter& state) const {
 }
 
 void CubatureRegions::load(StateReader& state) {
-    for (auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_, &difference_})
+    for (auto* numbers :
+         {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_, &difference_})
         *numbers = state.get_doubles();
     const std::size_t regions = centre_.size() / n_;
     if (centre_.size() != regions * n_ || half_width_.size() != regions * n_ ||

@@ -52,7 +52,9 @@ class CubatureRegions {
     // Between the value of the region that was halved and those of its halves, in the half of the larger error.
     double& difference(std::size_t r, std::size_t c) { return difference_[r * m_ + c]; }
     Face& face(std::size_t r, std::size_t c, bool upper) { return faces_[2 * (r * m_ + c) + upper]; }
-    const Face& face(std::size_t r, std::size_t c, bool upper) const { return faces_[2 * (r * m_ + c) + upper]; }
+    const Face& face(std::size_t r, std::size_t c, bool upper) const {
+        return faces_[2 * (r * m_ + c) + upper];
+    }
     Marks& marks(std::size_t r) { return marks_[r]; }
     const Marks& marks(std::size_t r) const { return marks_[r]; }
     double volume(std::size_t r) const;

@@ -13,8 +13,8 @@ namespace montelux {
 
 CubatureTotals::CubatureTotals(int components)
     : value_(static_cast<std::size_t>(components)), error_(value_.size()), rule_error_(value_.size()),
-      inflation_(value_.size(), 1.0), absolute_(value_.size()), equal_(value_.size(), 0), disagreement_(value_.size(), 0.0),
-      expected_(value_.size(), 0.0) {}
+      inflation_(value_.size(), 1.0), absolute_(value_.size()), equal_(value_.size(), 0),
+      disagreement_(value_.size(), 0.0), expected_(value_.size(), 0.0) {}
 
 void CubatureTotals::begin_comparison() {
     constexpr double memory = 0.9; // of a step
@@ -37,8 +37,9 @@ void CubatureTotals::add_up(const CubatureRegions& regions, const CubatureVerifi
             value.add(regions.value(r)[c]);
             error.add(regions.error(r)[c]);
             // Where signs cancel within a region, a quarter of its range.
-            absolute_[c] += std::max(std::abs(regions.value(r)[c]),
-                                     0.25 * regions.volume(r) * (regions.highest(r)[c] - regions.lowest(r)[c]));
+            absolute_[c] +=
+                std::max(std::abs(regions.value(r)[c]),
+                         0.25 * regions.volume(r) * (regions.highest(r)[c] - regions.lowest(r)[c]));
             lowest = std::min(lowest, regions.lowest(r)[c]);
             highest = std::max(highest, regions.highest(r)[c]);
         }

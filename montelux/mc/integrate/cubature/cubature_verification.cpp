@@ -32,11 +32,11 @@ constexpr std::uint64_t most_of_jumps = 5;
 // integrands look no different from jumps.
 constexpr double least_of_jumps = 0.01;
 constexpr std::size_t fewest_of_jumps = 32;
-constexpr std::size_t most_climbs = 8; // of a check
-constexpr std::size_t most_seen = 256; // surprises that are kept for later
+constexpr std::size_t most_climbs = 8;   // of a check
+constexpr std::size_t most_seen = 256;   // surprises that are kept for later
 constexpr double shown_by_checks = 0.01; // error that they can show, as a share of the tolerance
 constexpr double share_of_claim = 0.25;  // of an error that was claimed and confirmed, which stays
-constexpr double peak_widening = 2;    // volume of a peak over that of its half height
+constexpr double peak_widening = 2;      // volume of a peak over that of its half height
 
 // The least volume that holds half of the integral of |g|, of the component that is most concentrated.
 double volume_of_half(const CubatureRegions& regions) {
@@ -204,8 +204,7 @@ std::vector<double> CubatureVerification::tolerances(const CubatureRegions& regi
                 regions.volume(r) * std::max(std::abs(regions.lowest(r)[c]), std::abs(regions.highest(r)[c]));
         // A relative target of a vanishing value cannot be met.
         tolerance[c] = std::max(error[c], least_tolerance * size);
-        if (request.targeted())
-            tolerance[c] = std::max(tolerance[c], request.tolerance(c, value[c]));
+        if (request.targeted()) tolerance[c] = std::max(tolerance[c], request.tolerance(c, value[c]));
     }
     return tolerance;
 }
@@ -296,8 +295,15 @@ bool CubatureVerification::recall(CubatureRegions& regions, std::span<const doub
     const bool jumps = problem_.evaluator.dimensions() == 1 && raise_seam_errors(regions);
     const bool wrong = jumps || !of_regions.empty();
     // Once wrong, rules claim no smaller error than the checks can show.
-    for (std::size_t c = 0; wrong && c < value.size(); ++c) shown_[c] = shown_by_checks * request.tolerance(c, value[c]);
+    for (std::size_t c = 0; wrong && c < value.size(); ++c)
+        shown_[c] = shown_by_checks * request.tolerance(c, value[c]);
     return wrong;
+}
+
+void CubatureVerification::revisit(CubatureRegions& regions) {
+    std::vector<std::size_t> of_regions;
+    for (const CubatureWitness& w : witnesses_) of_regions.push_back(w.region);
+    if (!of_regions.empty()) add_errors(regions, of_regions);
 }
 
 void CubatureVerification::claim(std::span<const double> error) {

@@ -43,6 +43,8 @@ class CubatureVerification {
     // Tolerances of open witnesses, which follow the value.
     void update(const CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
                 const StepRequest& request);
+    // After the regions were evaluated by other rules: compares open witnesses with them.
+    void revisit(CubatureRegions& regions);
     // Notes errors that are claimed: halving a part of the regions to confirm them does not show much smaller ones.
     void claim(std::span<const double> error);
     // Forgets that the values were checked.
@@ -98,7 +100,8 @@ class CubatureVerification {
     NonFiniteCount non_finite_;
     double points_in_bulk_ = 0;
     bool surprised_ = false; // by any check
-    std::vector<double> slack_, shown_; // by checks; by what was seen before, once it showed rules to be wrong
+    std::vector<double> slack_,
+        shown_;              // by checks; by what was seen before, once it showed rules to be wrong
     bool disagrees_ = false; // the mean of the points, in the last check
     std::string warning_;
 };

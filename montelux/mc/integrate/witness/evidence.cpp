@@ -112,11 +112,15 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         const double tolerance = std::max(request.tolerance(c, tally.value[c]), tally.standard_error[c]);
         double worst = 0;
         const Witness* where = nullptr;
-        for (const Witness& p : look_.peaks) {
-            if (!tally.statistical) break; // rules are compared with every witness
-            const double mass = unexplained(p.value[c], p.volume, q_at(p.u), points, size_of(tally, c));
-            if (mass > worst) worst = mass, where = &p;
-        }
+        for (const auto* all : {&look_.peaks, &look_.witnesses})
+            for (const Witness& w : *all) {
+                if (!tally.statistical) break; // rules are compared with every witness
+                // Most witnesses are explained by any density.
+                if (!(unexplained(w.value[c], w.volume, 0x1p-4, points, size_of(tally, c)) > tolerance))
+                    continue;
+                const double mass = unexplained(w.value[c], w.volume, q_at(w.u), points, size_of(tally, c));
+                if (mass > worst) worst = mass, where = &w;
+            }
         std::array<char, 200> text;
         if (where && worst > tolerance) {
             std::snprintf(text.data(), text.size(),
@@ -124,11 +128,14 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
                           place(where->u).substr(5).c_str(), worst);
             tally.warnings.emplace_back(text.data());
         }
-        const double unresolved = examined_[c].unresolved;
+        const double at_ends = c < look_.unresolved.size() ? look_.unresolved[c] : 0;
+        const double unresolved = std::max(examined_[c].unresolved, at_ends);
         if (unresolved > tolerance) {
+            const std::string pole =
+                unresolved == at_ends ? "an end" : "the pole at " + place(examined_[c].u).substr(5);
             std::snprintf(text.data(), text.size(),
-                          "about %.2g of the integral lies closer to the pole at %s than doubles can tell",
-                          unresolved, place(examined_[c].u).substr(5).c_str());
+                          "about %.2g of the integral lies closer to %s than doubles can tell", unresolved,
+                          pole.c_str());
             tally.warnings.emplace_back(text.data());
             least[c] += unresolved;
         }
@@ -145,6 +152,7 @@ void Evidence::save(StateWriter& state) const {
     state.put(static_cast<std::uint64_t>(look_.peaks.size()));
     for (const Witness& p : look_.peaks) save_witness(state, p);
     state.put(look_.evaluations);
+    state.put(look_.unresolved);
     for (const Examined& e : examined_) {
         state.put(e.u);
         state.put(e.size);
@@ -160,6 +168,7 @@ void Evidence::load(StateReader& state) {
     for (std::uint64_t n = state.get_word(); n > 0; --n) look_.witnesses.push_back(load_witness(state));
     for (std::uint64_t n = state.get_word(); n > 0; --n) look_.peaks.push_back(load_witness(state));
     look_.evaluations = state.get_word();
+    look_.unresolved = state.get_doubles();
     for (Examined& e : examined_) {
         e.u = state.get_doubles();
         e.size = state.get_double();

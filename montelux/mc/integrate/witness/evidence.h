@@ -25,6 +25,8 @@ class Evidence {
     // With the peaks that were examined since.
     const FirstLook& seen() const { return look_; }
     std::uint64_t evaluations() const { return evaluations_; }
+    // Do values of a component have both signs, so that its integral may be zero?
+    bool cancels(std::size_t component) const { return largest_.cancels(component); }
 
     // Searches around the largest values of a run for poles, and measures their peaks, if these values are new and far
     // above their mean. At most `most_evaluations`.

@@ -202,9 +202,12 @@ class Look {
         if (!tests || !look_.divergence.empty()) return;
         for (std::size_t p = 0; p < walked; ++p)
             for (std::size_t c = 0; c < components(); ++c)
-                if (is_suspicious(paths[p], rows, p * ladder.size(), c) && diverges(paths[p], c)) {
-                    look_.divergence = place_of(paths[p]);
-                    return;
+                if (is_suspicious(paths[p], rows, p * ladder.size(), c)) {
+                    if (diverges(paths[p], c)) {
+                        look_.divergence = place_of(paths[p]);
+                        return;
+                    }
+                    if (n_ == 1) note_unresolved(paths[p], rows, p * ladder.size(), c);
                 }
     }
 
@@ -243,6 +246,20 @@ class Look {
     }
 
     std::size_t components() const { return static_cast<std::size_t>(raw_.evaluator().components()); }
+
+    // What lies beyond the finest shell, if masses fall by a power.
+    void note_unresolved(const Path& path, const std::vector<std::vector<double>>& rows, std::size_t first,
+                         std::size_t c) {
+        if (path.finest() > finest_inside) return;
+        const double finest = std::min(path.finest(), ladder.back()) / ladder.back();
+        const double from = ladder[3] * finest, to = ladder[5] * finest;
+        const double outer = std::abs(rows[first + 3][c]) * std::exp2(-from);
+        const double inner = std::abs(rows[first + 5][c]) * std::exp2(-to);
+        const double fall = std::log2(outer / inner) / (to - from); // 1 - power
+        if (!(fall > 0 && fall < 0.9)) return;
+        look_.unresolved.resize(components(), 0.0);
+        look_.unresolved[c] += inner * path.reach[0] * off_grid / fall;
+    }
 
     bool is_suspicious(const Path& path, const std::vector<std::vector<double>>& rows, std::size_t first,
                        std::size_t c) const {

@@ -17,6 +17,9 @@ struct FirstLook {
     // Tops that stand far above the others. Along each variable |g| stays above a half of its value there within
     // `volume`, a box; where variables are correlated the box is smaller than the peak.
     std::vector<Witness> peaks;
+    // In one variable, for each component the part of the integral of |g| that lies closer to an end, or farther out, than
+    // doubles resolve.
+    std::vector<double> unresolved;
     // Where the mass of |g| in dyadic shells does not fall, as "x -> 0"; empty where it falls everywhere.
     std::string divergence;
     std::uint64_t evaluations = 0;

@@ -1,5 +1,6 @@
 #include "montelux/mc/integrate/witness/largest_values.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -12,9 +13,15 @@ LargestValues::LargestValues(int components) : largest_(static_cast<std::size_t>
 void LargestValues::add(const PointBatch& u, const ValueBatch& g) {
     for (std::size_t c = 0; c < largest_.size(); ++c) {
         const std::span<const double> values = g.component(static_cast<int>(c));
-        double size = 0;
-        for (double v : values) size = std::max(size, std::abs(v));
+        double least = 0, greatest = 0;
+        for (double v : values) {
+            least = std::min(least, v);
+            greatest = std::max(greatest, v);
+        }
+        const double size = std::max(-least, greatest);
         Largest& known = largest_[c];
+        if (least < 0) known.negative.store(true, std::memory_order_relaxed);
+        if (greatest > 0) known.positive.store(true, std::memory_order_relaxed);
         if (size == 0 || size < known.size.load(std::memory_order_relaxed)) continue;
         std::size_t at = 0;
         while (std::abs(values[at]) != size) ++at;
@@ -23,8 +30,8 @@ void LargestValues::add(const PointBatch& u, const ValueBatch& g) {
         u.gather(at, witness.u.data());
         for (std::size_t k = 0; k < largest_.size(); ++k) witness.value[k] = g(at, static_cast<int>(k));
         const std::lock_guard lock(mutex_);
-        const double greatest = known.size.load(std::memory_order_relaxed);
-        if (size < greatest || (size == greatest && known.witness.u <= witness.u)) continue;
+        const double before = known.size.load(std::memory_order_relaxed);
+        if (size < before || (size == before && known.witness.u <= witness.u)) continue;
         known.witness = std::move(witness);
         known.size.store(size, std::memory_order_relaxed);
     }
@@ -36,6 +43,11 @@ std::vector<Witness> LargestValues::witnesses() const {
     for (const Largest& l : largest_)
         if (l.size > 0) seen.push_back(l.witness);
     return seen;
+}
+
+bool LargestValues::cancels(std::size_t component) const {
+    const Largest& l = largest_[component];
+    return l.negative == l.positive;
 }
 
 void LargestValues::clear() {
@@ -50,6 +62,8 @@ void LargestValues::save(StateWriter& state) const {
     const std::lock_guard lock(mutex_);
     for (const Largest& l : largest_) {
         state.put(l.size.load());
+        state.put(l.negative.load());
+        state.put(l.positive.load());
         state.put(l.witness.u);
         state.put(l.witness.value);
     }
@@ -59,6 +73,8 @@ void LargestValues::load(StateReader& state) {
     const std::lock_guard lock(mutex_);
     for (Largest& l : largest_) {
         l.size = state.get_double();
+        l.negative = state.get<int>() != 0;
+        l.positive = state.get<int>() != 0;
         l.witness.u = state.get_doubles();
         l.witness.value = state.get_doubles();
         if (!l.witness.value.empty() && l.witness.value.size() != largest_.size())

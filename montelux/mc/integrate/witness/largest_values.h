@@ -30,6 +30,8 @@ class LargestValues {
     void add(const PointBatch& u, const ValueBatch& g);
     // One per component that was ever other than zero.
     std::vector<Witness> witnesses() const;
+    // Do values of a component cancel? True where both signs were seen, and where nothing was.
+    bool cancels(std::size_t component) const;
     void clear();
 
     void save(StateWriter& state) const;
@@ -37,7 +39,8 @@ class LargestValues {
 
   private:
     struct Largest {
-        std::atomic<double> size = 0; // |g| of the witness, read without the lock
+        std::atomic<double> size = 0;             // |g| of the witness, read without the lock
+        std::atomic<bool> negative{}, positive{}; // were such values seen?
         Witness witness;
     };
     std::vector<Largest> largest_;

@@ -1,6 +1,7 @@
 #include "montelux/mc/integrate/witness/shells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace montelux {
@@ -12,10 +13,9 @@ constexpr double outer_from = 0.35, outer_to = 0.5, inner_from = 0.75, inner_to 
 // Ratio of the means for masses that fall like 1 / k.
 constexpr double harmonic = (outer_from + outer_to) / (inner_from + inner_to);
 constexpr double noise = 0.93; // factor for masses that oscillate
-constexpr double steady = 0.4; // least ratio of the masses of the halves of the inner range
+constexpr double steady =
+    0.25; // least ratio of the masses of the last third of the inner range and of that before
 constexpr double coarsest = 6; // least exponent of the innermost shells
-constexpr double shrinking =
-    0.8; // of the finest exponent, where values there are rounded to zero or infinity
 
 std::vector<double> exponents(double from, double to) {
     std::vector<double> k;
@@ -39,27 +39,50 @@ double finest_exponent(const Domain& domain, std::size_t d, double u) {
                   : std::clamp(finest_inside + std::log2(width / std::abs(x)), 4.0, finest_inside);
 }
 
-bool masses_diverge(const ShellValues& values, double finest, int codimension) {
+namespace {
+
+// The largest exponent up to `finest` whose value is a number other than zero, for values that have none beyond it.
+double last_value(const ShellValues& values, double finest) {
+    double known = coarsest, unknown = finest;
+    constexpr int bisections = 12;
+    for (int i = 0; i < bisections; ++i) {
+        const std::array<double, 1> middle{0.5 * (known + unknown)};
+        const double g = values(middle)[0];
+        (g > 0 && std::isfinite(g) ? known : unknown) = middle[0];
+    }
+    return known;
+}
+
+bool masses_diverge_until(const ShellValues& values, double finest, int codimension, bool may_be_rounded) {
     if (finest < coarsest) return false;
     const std::vector<double> outer = exponents(outer_from * finest, outer_to * finest);
     const std::vector<double> inner = exponents(inner_from * finest, inner_to * finest);
     const std::vector<double> g_outer = values(outer), g_inner = values(inner);
     // Relative to the coarsest inner shell, so that the masses stay within the range of doubles.
     auto mass = [&](double g, double k) { return g * std::exp2(codimension * (outer_to * finest - k)); };
-    double sum_outer = 0, sum_inner = 0, innermost = 0;
+    double sum_outer = 0, sum_inner = 0, innermost = 0, before = 0;
     bool rounded = false;
     for (std::size_t i = 0; i < shells; ++i) {
         if (std::isnan(g_outer[i]) || std::isnan(g_inner[i])) return false;
         rounded = rounded || std::isinf(mass(g_inner[i], inner[i])) || g_inner[i] == 0;
         sum_outer += mass(g_outer[i], outer[i]);
         sum_inner += mass(g_inner[i], inner[i]);
-        if (i >= shells / 2) innermost += mass(g_inner[i], inner[i]);
+        if (i >= shells - shells / 3)
+            innermost += mass(g_inner[i], inner[i]);
+        else if (i >= shells / 3)
+            before += mass(g_inner[i], inner[i]);
     }
-    // Infinite or zero by overflow or rounding: the shells before tell.
-    if (rounded) return masses_diverge(values, shrinking * finest, codimension);
+    // Infinite or zero, by overflow or rounding or in truth: the shells up to there tell.
+    if (rounded)
+        return may_be_rounded && masses_diverge_until(values, last_value(values, finest), codimension, false);
     // Within the inner range, too: the outer one may lie beyond all that is there.
-    return sum_inner > 0 && sum_inner >= noise * harmonic * sum_outer &&
-           innermost >= steady * (sum_inner - innermost);
+    return sum_inner > 0 && sum_inner >= noise * harmonic * sum_outer && innermost >= steady * before;
+}
+
+} // namespace
+
+bool masses_diverge(const ShellValues& values, double finest, int codimension) {
+    return masses_diverge_until(values, finest, codimension, true);
 }
 
 } // namespace montelux
