@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab docs build test test-all test-view test-peers test-methods test-packages test-blender blender packages wheels fuzz bench bench-integrate bench-hard bench-render lint format install dependencies clean
+.PHONY: help demo lab docs build test test-all test-view test-peers test-methods test-packages test-blender blender packages wheels fuzz bench bench-integrate bench-hard bench-typed bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -101,14 +101,18 @@ bench-integrate: dependencies ## integrators beside GSL, cubature, vegas (hours;
 	    $(if $(METHODS),--methods $(METHODS)) $(if $(TARGETS),--targets $(TARGETS)) | tee $(INTEGRATE)/result.md
 
 HARD := build/bench-hard
-bench-hard: dependencies ## integrators on hard integrals: silent failures (hours; less with SEEDS=5 FAMILIES=ring METHODS=auto TARGETS=1e-3)
+bench-hard: dependencies ## integrators on hard integrals: silent failures (hours; less with SEEDS=5 FAMILIES=modes METHODS=auto TARGETS=1e-3; BANK=tuning)
 	@cmake/install-dependencies.sh bench || echo "Going on without the rivals that are missing."
 	bench/integrate/vegas-environment.sh $(HARD)/vegas
 	cmake --preset mc -B $(HARD) -D MONTELUX_BENCH=ON -D MONTELUX_TESTS=OFF -D MONTELUX_LTO=ON
 	cmake --build $(HARD) --parallel $(JOBS) --target montelux_bench_hard
 	$(HARD)/bench/hard/montelux_bench_hard --vegas-python $(HARD)/vegas/bin/python --jobs $(JOBS) --verbose \
 	    --json $(HARD)/result.json $(if $(SEEDS),--seeds $(SEEDS)) $(if $(FAMILIES),--families $(FAMILIES)) \
-	    $(if $(METHODS),--methods $(METHODS)) $(if $(TARGETS),--targets $(TARGETS)) | tee $(HARD)/result.md
+	    $(if $(METHODS),--methods $(METHODS)) $(if $(TARGETS),--targets $(TARGETS)) $(if $(BANK),--bank $(BANK)) | tee $(HARD)/result.md
+
+bench-typed: build ## formulas as people type them, divergent ones too, through the program (an hour; less with METHODS=auto TARGETS=1e-3 TIME=2)
+	bench/typed/typed_integrals.py $(BUILD)/montelux --jobs $(JOBS) --seeds $(or $(SEEDS),1) \
+	    $(if $(METHODS),--methods $(METHODS)) $(if $(TARGETS),--targets $(TARGETS)) $(if $(TIME),--time $(TIME))
 
 RENDERS := build/bench-render
 bench-render: build ## pictures beside Mitsuba 3 (minutes a scene; SCENES="FOLDER ...", ENGINES=montelux,llvm_ad_rgb SPP=16 RUNS=3 WIDTH=200 THREADS=1)

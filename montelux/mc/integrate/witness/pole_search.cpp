@@ -147,7 +147,10 @@ PoleReport search_pole(RawValues& raw, const Witness& from, std::size_t componen
         // A pole of a surface meets a line beside this one; one of a point or a curve does not.
         Point beside = report.u;
         for (std::size_t e = 0; e < n; ++e)
-            if (e != d) beside[e] += beside[e] < 0.5 ? shift : -shift;
+            // By an amount of its own in each variable, or a diagonal curve would go along.
+            if (e != d)
+                beside[e] += (beside[e] < 0.5 ? shift : -shift) *
+                             (0.5 + std::fmod(0.6180339887498949 * static_cast<double>(e + 1), 1.0));
         search.follow(beside, d);
         report.diverges = search.line_diverges(beside, d);
     }
