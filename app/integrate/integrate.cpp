@@ -118,7 +118,8 @@ int run(const IntegrateOptions& o) {
             logarithm.relative = integrate(f, task.domain, task.method, task.budget, options);
     };
     if (task.integrand.compiled)
-        work(Integrand::compiled(task.integrand.compiled).with_landmarks(task.integrand.numbers), task.options);
+        work(Integrand::compiled(task.integrand.compiled).with_landmarks(task.integrand.numbers),
+             task.options);
     else
 #ifdef MONTELUX_WITH_RENDER
         shared.integrate(task, evaluate, work);

@@ -159,8 +159,9 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
     Formulas parsed(formulas, variables, "", constants);
     std::vector<double> numbers = parsed.numbers();
     NamedIntegrand made =
-        o.device.empty() ? NamedIntegrand{std::move(parsed), formulas}
-                         : on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
+        o.device.empty()
+            ? NamedIntegrand{std::move(parsed), formulas}
+            : on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
     made.numbers = std::move(numbers);
     return made;
 }
@@ -251,15 +252,18 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
          "E");
     text("--norm", o.norm,
-         "What the relative error of several formulas refers to: the value of each component, or vector, the norm "
+         "What the relative error of several formulas refers to: the value of each component, or vector, the "
+         "norm "
          "of all. Default: component",
          "NAME");
     text("--evaluations", o.evaluations,
-         "Maximum number of evaluations, for example 50000, 50k, 1M or 1e6. Default: 1e6 without an error or a "
+         "Maximum number of evaluations, for example 50000, 50k, 1M or 1e6. Default: 1e6 without an error or "
+         "a "
          "time",
          "N");
     text("--time", o.time,
-         "Stop after this time, for example 90, 90s, 10m or 1h30m. Default with an error and without evaluations: 60 s, "
+         "Stop after this time, for example 90, 90s, 10m or 1h30m. Default with an error and without "
+         "evaluations: 60 s, "
          "or 1e9 evaluations",
          "TIME");
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");

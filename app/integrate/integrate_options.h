@@ -20,7 +20,8 @@ struct IntegrateOptions {
     std::string library, source, components;
     std::string domain = "box", radius, centre;
     std::string method, device;
-    std::string relative_error, absolute_error, norm = "component", evaluations, time, seed = "0", threads = "0";
+    std::string relative_error, absolute_error, norm = "component", evaluations, time, seed = "0",
+                                                threads = "0";
     std::string non_finite = "skip";
     std::string checkpoint, checkpoint_every, plot, points, save_density, points_limit = "10000";
     bool log = false, resume = false, json = false, quiet = false;

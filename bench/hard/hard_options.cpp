@@ -9,7 +9,8 @@ namespace montelux::bench {
 std::string_view hard_options_help() {
     return "Runs integrators over the bank of hard integrals: silent failures, honest convergence, "
            "coverage.\n"
-           "  --bank NAME       judging, or tuning: the families that constants of integrators are set on  [judging]\n"
+           "  --bank NAME       judging, or tuning: the families that constants of integrators are set on  "
+           "[judging]\n"
            "  --families A,B    families, by name or beginning of a name (ring, mixture, ...)  [all]\n"
            "  --methods A,B     methods by name (auto, adaptive, vegas+, ...)\n"
            "                    [auto, adaptive, cubature, vegas, vegas_sobol, quasi, basic, stratified,\n"

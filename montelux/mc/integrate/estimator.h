@@ -85,7 +85,7 @@ struct Tally {
     bool localised = false;
     std::vector<std::string> warnings;
     std::vector<std::string> notes; // what is no warning, but good to know
-    std::string method, reason; // filled by estimators that choose among others
+    std::string method, reason;     // filled by estimators that choose among others
 };
 
 // An estimate that grows step by step. A step depends only on the problem, the settings, the state and the

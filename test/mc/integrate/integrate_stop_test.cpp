@@ -127,7 +127,7 @@ TEST(IntegrateStop, CancelFromAnotherThread) {
         EXPECT_LE(seconds, 0.6);
         if (milliseconds == 0) {
             EXPECT_GT(r.evaluations, 0u);
-        } else { // ended within its first step
+        } else {                           // ended within its first step
             EXPECT_LE(r.evaluations, 24u); // the first look
             EXPECT_TRUE(std::isinf(r.standard_error.at(0)));
         }

@@ -12,8 +12,8 @@
 #include "montelux/mc/integrate/adaptive/density_trainer.h"
 #include "montelux/mc/integrate/adaptive/mixture_estimate.h"
 #include "montelux/mc/integrate/trained/unit_density.h"
-#include "montelux/mc/math/special.h"
 #include "montelux/mc/integrate/witness/first_look.h"
+#include "montelux/mc/math/special.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/random/sobol.h"
 
@@ -216,9 +216,11 @@ class AdaptiveEstimator final : public Estimator {
             std::array<double, 1> q{1};
             density.pdf(at, q);
             for (std::size_t c = 0; c < tally.value.size(); ++c) {
-                const double mass = unexplained(peak.value[c], peak.volume, q[0],
-                                                static_cast<double>(estimate.all_points()), tally.absolute[c]);
-                if (mass > negligible_peak * std::max(tally.absolute[c], std::abs(tally.standard_error[c]))) return true;
+                const double mass =
+                    unexplained(peak.value[c], peak.volume, q[0], static_cast<double>(estimate.all_points()),
+                                tally.absolute[c]);
+                if (mass > negligible_peak * std::max(tally.absolute[c], std::abs(tally.standard_error[c])))
+                    return true;
             }
         }
         return false;
@@ -255,7 +257,8 @@ class AdaptiveEstimator final : public Estimator {
     // Searches again where the points so far do not explain them.
     StepOutcome consider_peaks() {
         known_peaks_ = problem_.look->peaks.size();
-        if (phase_ == Phase::weighted ? misses_a_peak(trainer_.density(), weighted_) : misses_a_peak(cube_, uniform_)) {
+        if (phase_ == Phase::weighted ? misses_a_peak(trainer_.density(), weighted_)
+                                      : misses_a_peak(cube_, uniform_)) {
             retrain(2 * static_cast<double>(trainer_.evaluations()));
             phase_ = Phase::search;
         }
@@ -413,7 +416,8 @@ class AdaptiveEstimator final : public Estimator {
         constexpr double rule_of_three = 3; // 5 % of probability
         std::array<char, 160> text;
         std::snprintf(text.data(), text.size(),
-                      "nearly all of the domain is zero but for peaks that were seen by chance or scale; others in less "
+                      "nearly all of the domain is zero but for peaks that were seen by chance or scale; "
+                      "others in less "
                       "than 1/%.0f of it would be missed in 5 %% of cases",
                       static_cast<double>(uniform_.all_points()) / rule_of_three);
         return text.data();

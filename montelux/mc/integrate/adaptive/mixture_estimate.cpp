@@ -51,8 +51,8 @@ double MixtureEstimate::inflation(double standard_error, int component) const {
 }
 
 double MixtureEstimate::standard_error(const CovarianceMoments& moments, int component) const {
-    const double error = caution() * std::sqrt(moments.variance(component) /
-                                               static_cast<double>(sums_.sums.replicates()));
+    const double error =
+        caution() * std::sqrt(moments.variance(component) / static_cast<double>(sums_.sums.replicates()));
     return std::max(error * inflation(error, component), least_error(moments, component));
 }
 
@@ -79,7 +79,8 @@ double MixtureEstimate::error_ratio(const StepRequest& request) const {
     double ratio = 0;
     for (int c = 0; c < moments.components(); ++c) {
         const double value = moments.mean(c), error = standard_error(moments, c);
-        const double tolerance = request.targeted() ? request.tolerance(static_cast<std::size_t>(c), value) : std::abs(value);
+        const double tolerance =
+            request.targeted() ? request.tolerance(static_cast<std::size_t>(c), value) : std::abs(value);
         if (error > 0) ratio = std::max(ratio, error / tolerance);
     }
     return ratio;
@@ -91,8 +92,9 @@ std::uint64_t MixtureEstimate::next_end(const StepRequest& request, std::uint64_
         points_ + request.max_evaluations / static_cast<std::uint64_t>(sums_.sums.replicates());
     std::uint64_t goal = points_ == 0 ? first : next_balanced(points_);
     if (points_ > 0) {
-        const double wanted = request.targeted() ? static_cast<double>(points_) * std::min(2.0, error_ratio(request))
-                                       : static_cast<double>(std::min(2 * points_, affordable));
+        const double wanted = request.targeted()
+                                  ? static_cast<double>(points_) * std::min(2.0, error_ratio(request))
+                                  : static_cast<double>(std::min(2 * points_, affordable));
         while (static_cast<double>(next_balanced(goal)) <= wanted) goal = next_balanced(goal);
     }
     if (goal > affordable) goal = last_balanced(affordable);
@@ -137,7 +139,8 @@ bool MixtureEstimate::heavy_tailed(double standard_error) const {
 
 void MixtureEstimate::warn_of_tail(double standard_error, std::vector<std::string>& warnings) const {
     const double n = static_cast<double>(all_points());
-    const double beyond = beyond_the_largest(sums_.extremes.tail(), all_points(), n); // which the error contains
+    const double beyond =
+        beyond_the_largest(sums_.extremes.tail(), all_points(), n); // which the error contains
     const double spread = std::sqrt(std::max(0.0, standard_error * standard_error - beyond * beyond));
     warn_of_heavy_tail(sums_.extremes.tail(), all_points(), n, spread, warnings);
 }

@@ -10,10 +10,11 @@ namespace montelux {
 namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::max();
-constexpr double least_excess = 3;        // of log h above what known modes explain, for another search
+constexpr double least_excess = 3; // of log h above what known modes explain, for another search
 constexpr double first_difference = 0.02, least_difference = 1e-8; // of coordinates, in widths of the cube
-constexpr double longest_step = 0.3;      // of a coordinate
-constexpr std::size_t whole_curvature = 10; // variables up to which a step takes the whole matrix of curvatures
+constexpr double longest_step = 0.3;                               // of a coordinate
+constexpr std::size_t whole_curvature =
+    10; // variables up to which a step takes the whole matrix of curvatures
 constexpr double least_coordinate = 1e-12; // distance from the faces
 
 class Climber {
@@ -70,7 +71,8 @@ class Climber {
             for (double length : lengths) {
                 tries.push_back(x);
                 for (std::size_t d = 0; d < n_; ++d)
-                    tries.back()[d] = std::clamp(x[d] + length * direction[d], least_coordinate, 1 - least_coordinate);
+                    tries.back()[d] =
+                        std::clamp(x[d] + length * direction[d], least_coordinate, 1 - least_coordinate);
             }
             const double before = top;
             for (auto& point : tries) { // one at a time: the first is nearly always the best
@@ -104,7 +106,8 @@ class Climber {
             std::vector<std::vector<double>> corners;
             for (std::size_t i = 0; i < n_; ++i)
                 for (std::size_t j = 0; j < i; ++j)
-                    for (auto [a, b] : {std::pair(1, 1), std::pair(-1, -1), std::pair(1, -1), std::pair(-1, 1)}) {
+                    for (auto [a, b] :
+                         {std::pair(1, 1), std::pair(-1, -1), std::pair(1, -1), std::pair(-1, 1)}) {
                         corners.push_back(x);
                         corners.back()[i] += a * h[i];
                         corners.back()[j] += b * h[j];
@@ -129,7 +132,10 @@ class Climber {
         } else {
             for (std::size_t d = 0; d < n_; ++d) {
                 const double c = curvature[d * n_ + d];
-                direction[d] = std::clamp(c < 0 ? -gradient[d] / c : gradient[d] > 0 ? 0.1 : -0.1, -longest_step, longest_step);
+                direction[d] = std::clamp(c < 0             ? -gradient[d] / c
+                                          : gradient[d] > 0 ? 0.1
+                                                            : -0.1,
+                                          -longest_step, longest_step);
             }
         }
         for (std::size_t d = 0; d < n_; ++d) expected += std::abs(gradient[d] * direction[d]);
@@ -255,7 +261,8 @@ std::vector<double>::const_iterator least_explained(const std::vector<double>& l
     return least;
 }
 
-std::optional<Gaussian> diagonal_gaussian(const std::vector<double>& mean, const std::vector<double>& deviations) {
+std::optional<Gaussian> diagonal_gaussian(const std::vector<double>& mean,
+                                          const std::vector<double>& deviations) {
     const std::size_t n = mean.size();
     std::vector<double> factor(n * n, 0.0);
     for (std::size_t d = 0; d < n; ++d) {

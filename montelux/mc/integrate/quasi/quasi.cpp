@@ -281,7 +281,8 @@ class QuasiEstimator final : public Estimator {
         if (previous_error_.empty()) return false;
         const double student = student_t_quantile(normal_cdf(3), replicates_ - 1) / 3;
         bool surely = true, twice = true;
-        const StepRequest target{.relative_error = relative_target_, .absolute_error = absolute_target_, .sizes = sizes_};
+        const StepRequest target{
+            .relative_error = relative_target_, .absolute_error = absolute_target_, .sizes = sizes_};
         for (std::size_t c = 0; c < tally.value.size(); ++c) {
             const double tolerance = target.tolerance(c, tally.value[c]);
             surely = surely && tally.standard_error[c] * student <= tolerance;
