@@ -33,13 +33,13 @@ def as_region(domain: Ranges) -> Region:
     try:
         ranges = np.asarray(domain, dtype=float)
     except (TypeError, ValueError):
-        raise Error(f"domain: {domain!r} was given; expected ranges (lower, upper), one a variable") from None
+        raise Error(f"domain: {domain!r} was given; expected ranges (lower, upper), one per variable") from None
     is_list = ranges.shape != (2,)
     if not is_list:
         ranges = ranges.reshape(1, 2)
     if ranges.ndim != 2 or ranges.shape[1] != 2 or len(ranges) == 0:
         raise Error(
-            f"domain: an array of shape {ranges.shape} was given; expected ranges (lower, upper), one a variable"
+            f"domain: an array of shape {ranges.shape} was given; expected ranges (lower, upper), one per variable"
         )
     return Region(Domain.box([(float(a), float(b)) for a, b in ranges]), is_list)
 

@@ -77,7 +77,7 @@ void ExtremeValues::add(const DeviceSummary& values, std::uint64_t count) {
     c.count += count;
     c.sum += values.sum;
     c.squares += values.squares;
-    // Of values of one sign exactly; else a bound, which a device does not sum apart.
+    // Exact for values of one sign; else a bound, since a device does not sum magnitudes.
     c.magnitudes += values.least >= 0 || values.greatest <= 0
                         ? std::abs(values.sum)
                         : std::sqrt(values.squares * static_cast<double>(count));

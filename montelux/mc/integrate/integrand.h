@@ -90,7 +90,7 @@ class Integrand {
         other.landmarks_ = landmarks_;
         return other;
     }
-    // The same integrand, which may have features where a coordinate is one of these numbers: those of a formula.
+    // Returns this integrand with landmarks: coordinates at which it may have features, such as the numbers of a formula.
     Integrand with_landmarks(std::vector<double> landmarks) const {
         Integrand other = *this;
         other.landmarks_ = std::move(landmarks);

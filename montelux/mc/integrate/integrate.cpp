@@ -36,8 +36,8 @@ constexpr std::uint64_t least_for_look = 512; // smaller limits leave no room fo
 // Evaluations after which the largest values are examined, and the factor of them until the next time.
 constexpr std::uint64_t first_examination = 8192, next_examination = 8;
 constexpr double zero_within = 3; // errors within which a value counts as zero
-// Of a look, before the speed of the integrand is known: seconds of the first calls, and of the method's own work for
-// each evaluation.
+// Costs assumed until the first step is timed, in seconds: of the first calls of the integrand, and of the method's own
+// work per evaluation.
 constexpr double first_calls = 1e-4, work_per_evaluation = 3e-7;
 
 std::string point_text(const std::vector<double>& point) {

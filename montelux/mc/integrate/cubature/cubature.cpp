@@ -25,7 +25,7 @@ constexpr std::uint64_t search_evaluations = 4096;
 constexpr std::size_t search_regions = 16;
 constexpr std::uint64_t regions_all_confirmed =
     32; // of one variable, of which all are halved to confirm the others
-// Ratios of successive differences: those of a jump are a half; the largest that is told from a constant.
+// Ratios of successive differences: the least that counts as slow (a jump has 1/2), and the largest that is assumed.
 constexpr double slow_ratio = 0.6, slowest_ratio = 0.999;
 constexpr double caution_of_series = 2; // differences depend on where in a region a pole lies
 // Points after which an integrand with equal values at all of them is taken as constant.

@@ -45,11 +45,11 @@ class CubatureRegions {
     std::span<const double> lowest(std::size_t r) const { return {&lowest_[r * m_], m_}; }
     std::span<double> highest(std::size_t r) { return {&highest_[r * m_], m_}; }
     std::span<const double> highest(std::size_t r) const { return {&highest_[r * m_], m_}; }
-    // Of one variable: what the rule predicts of a component at an end of the region (SymmetricRule::FaceValue).
+    // Prediction of a component at an end of a region of one variable (SymmetricRule::FaceValue).
     struct Face {
         double value, slack, unseen;
     };
-    // Between the value of the region that was halved and those of its halves, in the half of the larger error.
+    // Difference between the value of the halved region and those of its halves; kept by the half of the larger error.
     double& difference(std::size_t r, std::size_t c) { return difference_[r * m_ + c]; }
     Face& face(std::size_t r, std::size_t c, bool upper) { return faces_[2 * (r * m_ + c) + upper]; }
     const Face& face(std::size_t r, std::size_t c, bool upper) const {

@@ -41,7 +41,7 @@ class Evidence {
     void load(StateReader& state);
 
   private:
-    // Of the largest value of a component.
+    // Result of the examination of a component's largest value.
     struct Examined {
         std::vector<double> u; // empty before the first examination
         double size = 0, unresolved = 0;

@@ -45,7 +45,7 @@ struct Path {
             if (side[d] != 0) least = std::min(least, anchors[d].finest + std::log2(reach[d]));
         return std::min(least, std::max(finest_inside, finest_at_origin / codimension()));
     }
-    // Of the shell around the anchor; `across`: widths in the variables that do not move.
+    // Volume of the shell around the anchor; `across`: widths in the variables that do not move.
     double volume(double exponent, const std::vector<double>& across) const {
         double product = 1;
         for (std::size_t d = 0; d < side.size(); ++d)

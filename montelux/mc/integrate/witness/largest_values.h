@@ -16,7 +16,7 @@ namespace montelux {
 struct Witness {
     std::vector<double> u, value;
     double volume = 1; // of the part of the cube that it may speak for
-    // Of the top of a peak: half of the width within which |g| stays above a half, along each variable.
+    // Half widths of a peak with this top, along each variable, where |g| stays above a half; empty for other points.
     std::vector<double> extent = {};
 };
 

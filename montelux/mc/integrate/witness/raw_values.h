@@ -18,7 +18,7 @@ class RawValues {
     std::uint64_t evaluations() const { return evaluations_; }
     // One row of components for each point.
     std::vector<std::vector<double>> operator()(const std::vector<std::vector<double>>& points);
-    // The same of the integrand itself, at points of the domain.
+    // Values of the integrand itself, without the change of volume, at points of the domain.
     std::vector<std::vector<double>> at(const std::vector<std::vector<double>>& points);
 
   private:

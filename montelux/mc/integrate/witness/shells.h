@@ -14,7 +14,8 @@ namespace montelux {
 // Exponents of the smallest distances that a look takes: inside of the cube, and from an end that is the origin, where
 // doubles are denser; squares of such distances are still doubles.
 inline constexpr double finest_inside = 46, finest_at_origin = 400;
-// The same around coordinate d = u of the unit cube: spacings of doubles, in u and in x, are far below the distance.
+// Exponent of the smallest distance around coordinate d = u of the unit cube that is far above the spacing of doubles, in
+// u and in x.
 double finest_exponent(const Domain& domain, std::size_t d, double u);
 
 // |g| at distances 2^-k from a point, k one of the exponents; infinite where g is, NaN where it is not a number.

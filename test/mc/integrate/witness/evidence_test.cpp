@@ -76,7 +76,7 @@ TEST(PoleSearch, TellsPolesOfPointsFromThoseOfSurfaces) {
     };
     EXPECT_TRUE(pole_of(line(1), 2, {0.36, 0.5}).diverges);
     EXPECT_FALSE(pole_of(line(0.8), 2, {0.36, 0.5}).diverges);
-    // Of two points in a square: a surface of codimension two.
+    // Distance of two points in a square: the pole is a surface of codimension two.
     const auto pair = [](std::span<const double> x) { return 1 / std::hypot(x[0] - x[2], x[1] - x[3]); };
     EXPECT_FALSE(pole_of(pair, 4, {0.36, 0.51, 0.37, 0.5}).diverges);
 }
