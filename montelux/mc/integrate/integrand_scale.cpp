@@ -106,6 +106,12 @@ std::vector<double> IntegrandScale::largest() const {
     return all;
 }
 
+void IntegrandScale::ignore_spikes() {
+    std::ranges::fill(exponents_, 0.0);
+    for (std::size_t c = 0; c < exponents_.size(); ++c) largest_[c].store(nothing);
+    settled_ = true;
+}
+
 void IntegrandScale::restore_largest(const std::vector<double>& largest) {
     for (std::size_t c = 0; c < exponents_.size(); ++c) largest_[c].store(largest[c]);
 }

@@ -36,6 +36,8 @@ class IntegrandScale {
     // Largest magnitudes met; given back after looks whose extreme values no estimate contains.
     std::vector<double> largest() const;
     void restore_largest(const std::vector<double>& largest);
+    // Forgets the magnitudes met and keeps exponents of zero, for values of which few are far beyond the others.
+    void ignore_spikes();
     // Moves exponents whose components left the safe range. True: the estimate so far is void.
     bool adjust();
 

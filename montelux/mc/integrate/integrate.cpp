@@ -35,7 +35,9 @@ constexpr std::uint64_t share_of_look = 32;   // and one over the largest share 
 constexpr std::uint64_t least_for_look = 512; // smaller limits leave no room for one
 // Evaluations after which the largest values are examined, and the factor of them until the next time.
 constexpr std::uint64_t first_examination = 8192, next_examination = 8;
-constexpr double zero_within = 3; // errors within which a value counts as zero
+constexpr double far_scale = 400,
+                 near_scale = 200; // exponents of values: of spikes, and of those that need no scale
+constexpr double zero_within = 3;  // errors within which a value counts as zero
 // Costs assumed until the first step is timed, in seconds: of the first calls of the integrand, and of the method's own
 // work per evaluation.
 constexpr double first_calls = 1e-4, work_per_evaluation = 3e-7;
@@ -141,7 +143,14 @@ class Run {
         try {
             for (int i = 0; i < most_looks; ++i) {
                 evidence_.look(f_.landmarks(), std::min(most_of_look, limit_ / share_of_look));
-                if (!scale_.adjust()) break;
+                const bool moved = scale_.adjust();
+                if (i == 0 && scale_.form() == IntegrandForm::value && follows_spikes()) {
+                    scale_.ignore_spikes();
+                    evidence_.look(f_.landmarks(), std::min(most_of_look, limit_ / share_of_look));
+                    scale_.ignore_spikes();
+                    break;
+                }
+                if (!moved) break;
             }
         } catch (const IntegrandInterrupted&) {
             interruption_.clear_deadline();
@@ -154,6 +163,22 @@ class Run {
                          std::max(0.0, seen.seconds - first_calls) / static_cast<double>(seen.evaluations));
         make_estimator();
         return std::nullopt;
+    }
+
+    // Is the scale that of single huge values (at points where a pole is rounded to infinity, nearly), although most
+    // values need none?
+    bool follows_spikes() const {
+        for (std::size_t c = 0; c < static_cast<std::size_t>(evaluator_.components()); ++c) {
+            if (!(scale_.exponent(c) > far_scale)) continue;
+            std::vector<double> sizes;
+            for (const Witness& w : evidence_.seen().witnesses)
+                if (w.value[c] != 0) sizes.push_back(std::log2(std::abs(w.value[c])) + scale_.exponent(c));
+            if (sizes.empty()) continue;
+            const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+            std::ranges::nth_element(sizes, middle);
+            if (std::abs(*middle) < near_scale) return true;
+        }
+        return false;
     }
 
     // An absolute error is scaled like the values before the first of them is judged by it.
