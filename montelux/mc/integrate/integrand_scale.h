@@ -27,6 +27,7 @@ class IntegrandScale {
 
     IntegrandForm form() const { return form_; }
     double exponent(std::size_t component) const { return exponents_[component]; }
+    const std::vector<double>& exponents() const { return exponents_; }
     // x 2^k_c; may overflow or underflow, as the value in the user's unit does.
     double unscaled(double x, std::size_t component) const;
     // x 2^-k, for `common` scales.

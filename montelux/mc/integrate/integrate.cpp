@@ -143,8 +143,9 @@ class Run {
         try {
             for (int i = 0; i < most_looks; ++i) {
                 evidence_.look(f_.landmarks(), std::min(most_of_look, limit_ / share_of_look));
+                const std::vector<double> units = scale_.exponents();
                 const bool moved = scale_.adjust();
-                if (i == 0 && scale_.form() == IntegrandForm::value && follows_spikes()) {
+                if (i == 0 && scale_.form() == IntegrandForm::value && follows_spikes(units)) {
                     scale_.ignore_spikes();
                     evidence_.look(f_.landmarks(), std::min(most_of_look, limit_ / share_of_look));
                     scale_.ignore_spikes();
@@ -167,12 +168,12 @@ class Run {
 
     // Is the scale that of single huge values (at points where a pole is rounded to infinity, nearly), although most
     // values need none?
-    bool follows_spikes() const {
+    bool follows_spikes(const std::vector<double>& units) const {
         for (std::size_t c = 0; c < static_cast<std::size_t>(evaluator_.components()); ++c) {
             if (!(scale_.exponent(c) > far_scale)) continue;
             std::vector<double> sizes;
             for (const Witness& w : evidence_.seen().witnesses)
-                if (w.value[c] != 0) sizes.push_back(std::log2(std::abs(w.value[c])) + scale_.exponent(c));
+                if (w.value[c] != 0) sizes.push_back(std::log2(std::abs(w.value[c])) + units[c]);
             if (sizes.empty()) continue;
             const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
             std::ranges::nth_element(sizes, middle);
