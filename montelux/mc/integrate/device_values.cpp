@@ -37,8 +37,10 @@ void DeviceValues::copy_what_sums_hide(std::uint64_t each) {
     static_assert(device_batch == batch_size);
     if (block_.summaries == nullptr) return;
     each_ = each;
+    const LargestValues* known = g_.kept_largest();
     const auto hides = [&](const DeviceSummary& s) {
         if (s.finite == 0 || s.greatest > floor_ || -s.least > floor_) return true;
+        if (known && known->learns(0, s.least, s.greatest)) return true;
         // What leaves the extreme values as they are leaves all as they are: scaling, clamping.
         ValueBuffer extremes(2, 1);
         extremes.component(0)[0] = s.raw_least;

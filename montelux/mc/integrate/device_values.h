@@ -34,8 +34,8 @@ class DeviceValues {
         return std::max<std::uint64_t>(1, block_size() / replicates);
     }
     // Blocks are summed on the device from here on, if the integrand has one component. Values are copied of batches
-    // alone whose sums do not say everything: with values that are not finite, that must be scaled, or that are larger
-    // in magnitude than `floor`, that of their tail. What OnDevice::after does to values is asked of the least and the
+    // alone whose sums do not say everything: with values that are not finite, that must be scaled, that are larger
+    // in magnitude than `floor`, that of their tail, or that are the largest of the run. What OnDevice::after does to values is asked of the least and the
     // greatest of a batch, in a call of their own: where it leaves these, it must leave those between them.
     void summarise_above(double floor);
     // Of the batch that begins at that point of the block; null where its values were copied, for read().
@@ -53,7 +53,7 @@ class DeviceValues {
     void draw_mixture(std::uint64_t first, std::uint64_t count);
 
     // Values of g at points number, number + 1, ... of the block. `points` fills in their coordinates in the unit cube
-    // before the domain; it is called where a value is not finite.
+    // before the domain; it is called where a value is not finite or the largest of the run.
     void read(std::uint64_t number, ValueBatch g, const std::function<void(PointBuffer&)>& points,
               NonFiniteCount& non_finite) const;
     // The same for `count` points of a mixture: values at those that lie inside the cube, and the density there.

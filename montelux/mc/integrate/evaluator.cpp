@@ -77,12 +77,17 @@ void Evaluator::complete(ValueBatch g, const double* volume, const std::function
     double sum = 0; // zero unless a value is not finite
     for (int c = 0; c < g.components(); ++c)
         for (double v : g.component(c)) sum += v * 0;
-    if (sum == 0) return;
-    PointBuffer u(g.count(), domain_.uniforms()), x(g.count(), domain_.dimensions());
+    const bool finite = sum == 0;
+    if (finite && !(largest_ && largest_->learns(g))) return;
+    PointBuffer u(g.count(), domain_.uniforms());
     points(u);
-    std::vector<double> ignored(g.count(), 1.0);
-    domain_.map(u, x, ignored);
-    screen(x, g, non_finite);
+    if (!finite) {
+        PointBuffer x(g.count(), domain_.dimensions());
+        std::vector<double> ignored(g.count(), 1.0);
+        domain_.map(u, x, ignored);
+        screen(x, g, non_finite);
+    }
+    if (largest_) largest_->add(u, g);
 }
 
 void Evaluator::at_points(const PointBatch& x, ValueBatch f, NonFiniteCount& non_finite) const {

@@ -41,10 +41,9 @@ class Evaluator {
     const Integrand& integrand() const { return integrand_; }
     NonFinitePolicy policy() const { return policy_; }
 
-    // Largest values of all calls of operator() from now on, where a place for them is given; outlives its use.
+    // Largest values from now on, where a place for them is given; outlives its use.
     void keep_largest(LargestValues* largest) { largest_ = largest; }
-    // Those kept so far; none without a place for them.
-    std::vector<Witness> largest() const { return largest_ ? largest_->witnesses() : std::vector<Witness>(); }
+    const LargestValues* kept_largest() const { return largest_; }
 
     // g at points u; values that are not finite become zero and are counted, and the indices of their points
     // added to `where`, if that is given. Scratch memory is the thread's.
@@ -52,7 +51,7 @@ class Evaluator {
                     std::vector<std::size_t>* where = nullptr) const;
 
     // Makes g of values f that a device computed at points of the unit cube; `volume` is null where the change of
-    // volume is constant. `points` fills in those points, and is called where a value is not finite.
+    // volume is constant. `points` fills in those points, and is called where a value is not finite or larger than those kept.
     void complete(ValueBatch g, const double* volume, const std::function<void(PointBuffer&)>& points,
                   NonFiniteCount& non_finite) const;
 

@@ -100,7 +100,7 @@ class Run {
         while (!stop && !(stop = reason_to_stop())) {
             stop = step();
             if (stop) break;
-            if (scale_.adjust()) {
+            if (scale_moved()) {
                 start_again();
                 continue;
             }
@@ -188,6 +188,15 @@ class Run {
         ValueBuffer ignored(probe.x.count(), evaluator_.components());
         evaluator_.integrand()(probe.x, ignored);
         lost_ += probe.x.count();
+    }
+
+    // Moves the scale, and with it the evidence, if sums may overflow or underflow.
+    bool scale_moved() {
+        std::vector<double> units = scale_.exponents();
+        if (!scale_.adjust()) return false;
+        for (std::size_t c = 0; c < units.size(); ++c) units[c] -= scale_.exponent(c);
+        evidence_.rescale(units);
+        return true;
     }
 
     // Starts again after a change of scale: sums so far overflowed or underflowed.

@@ -41,8 +41,8 @@ TEST_F(SumsOnEmulatedDevice, EstimatesHaveTheProcessorsBits) {
          [](double x, double y) { return std::pow(x, -0.6) + y; }},
         {"rarely nan", Domain({{0, 2}, {0, 1}}), "x[0] < 1e-5 ? nan(\"\") : x[1]",
          [](double x, double y) { return x < 1e-5 ? std::nan("") : y; }},
-        {"rarely huge", Domain::unit_cube(2), "x[0] < 1e-5 ? 1e290 : x[1]",
-         [](double x, double y) { return x < 1e-5 ? 1e290 : y; }},
+        {"rarely huge", Domain::unit_cube(2), "x[0] < 1e-5 ? 1e290 + 1e294 * x[0] : x[1]",
+         [](double x, double y) { return x < 1e-5 ? 1e290 + 1e294 * x : y; }},
         {"scaled", Domain::unit_cube(2), "1e-200 * (x[0] + x[1])",
          [](double x, double y) { return 1e-200 * (x + y); }}};
     for (const Summed& f : all) {

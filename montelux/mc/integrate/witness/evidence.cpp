@@ -57,6 +57,21 @@ void Evidence::look(std::span<const double> landmarks, std::uint64_t most_evalua
     std::ranges::fill(examined_, Examined());
 }
 
+void Evidence::rescale(std::span<const double> exponents) {
+    const auto rescaled = [&](double x, std::size_t c) {
+        return std::ldexp(x, static_cast<int>(exponents[c]));
+    };
+    for (auto* all : {&look_.peaks, &look_.witnesses})
+        for (Witness& w : *all)
+            for (std::size_t c = 0; c < w.value.size(); ++c) w.value[c] = rescaled(w.value[c], c);
+    for (std::size_t c = 0; c < examined_.size(); ++c) {
+        examined_[c].size = rescaled(examined_[c].size, c);
+        examined_[c].unresolved = rescaled(examined_[c].unresolved, c);
+        if (c < look_.unresolved.size()) look_.unresolved[c] = rescaled(look_.unresolved[c], c);
+    }
+    largest_.clear();
+}
+
 void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
     const std::uint64_t cost = most_of_examination * static_cast<std::uint64_t>(evaluator_.dimensions() + 1);
     std::uint64_t left = most_evaluations;

@@ -7,17 +7,26 @@
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
+namespace {
+
+// Least and greatest of some values and of zero.
+std::pair<double, double> range_of(std::span<const double> values) {
+    double least = 0, greatest = 0;
+    for (double v : values) {
+        least = std::min(least, v);
+        greatest = std::max(greatest, v);
+    }
+    return {least, greatest};
+}
+
+} // namespace
 
 LargestValues::LargestValues(int components) : largest_(static_cast<std::size_t>(components)) {}
 
 void LargestValues::add(const PointBatch& u, const ValueBatch& g) {
     for (std::size_t c = 0; c < largest_.size(); ++c) {
         const std::span<const double> values = g.component(static_cast<int>(c));
-        double least = 0, greatest = 0;
-        for (double v : values) {
-            least = std::min(least, v);
-            greatest = std::max(greatest, v);
-        }
+        const auto [least, greatest] = range_of(values);
         const double size = std::max(-least, greatest);
         Largest& known = largest_[c];
         if (least < 0) known.negative.store(true, std::memory_order_relaxed);
@@ -35,6 +44,19 @@ void LargestValues::add(const PointBatch& u, const ValueBatch& g) {
         known.witness = std::move(witness);
         known.size.store(size, std::memory_order_relaxed);
     }
+}
+
+bool LargestValues::learns(std::size_t component, double least, double greatest) const {
+    const Largest& l = largest_[component];
+    return std::max(-least, greatest) > l.size || (least < 0 && !l.negative) || (greatest > 0 && !l.positive);
+}
+
+bool LargestValues::learns(const ValueBatch& g) const {
+    for (std::size_t c = 0; c < largest_.size(); ++c) {
+        const auto [least, greatest] = range_of(g.component(static_cast<int>(c)));
+        if (learns(c, least, greatest)) return true;
+    }
+    return false;
 }
 
 std::vector<Witness> LargestValues::witnesses() const {

@@ -28,6 +28,9 @@ class LargestValues {
 
     // Values are finite.
     void add(const PointBatch& u, const ValueBatch& g);
+    // Would `add` learn from values of a component between these two?
+    bool learns(std::size_t component, double least, double greatest) const;
+    bool learns(const ValueBatch& g) const;
     // One per component that was ever other than zero.
     std::vector<Witness> witnesses() const;
     // Do values of a component cancel? True where both signs were seen, and where nothing was.
