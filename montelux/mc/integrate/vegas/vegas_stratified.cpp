@@ -15,6 +15,13 @@ namespace {
 constexpr std::uint64_t most_boxes = 1 << 18;
 constexpr std::uint64_t points_per_box = 8; // at least two of them are each box's own
 
+// What the values in each box of one variable say of jumps between them.
+struct BoxLine {
+    BoxLine(std::size_t components, std::size_t boxes) : means(components * boxes), variances(means) {}
+
+    std::vector<double> means, variances; // of component c in box h: number h components + c
+};
+
 // Moments of the values in one box.
 class BoxMoments {
   public:
@@ -53,6 +60,14 @@ class BoxMoments {
     }
     // Greatest distance of a value of the first component from the mean.
     double largest_deviation() const { return std::max(greatest_[0] - mean_[0], mean_[0] - least_[0]); }
+    // Notes the moments of box h.
+    void note(std::size_t h, BoxLine& line) const {
+        const std::size_t m = mean_.size();
+        for (std::size_t c = 0; c < m; ++c) {
+            line.means[h * m + c] = mean_[c];
+            line.variances[h * m + c] = products_[full_ ? c * m + c : c] / (count_ - 1);
+        }
+    }
     // Adds the box's part of the mean over `boxes` boxes and of its covariance; returns the variance of all
     // components together, each scaled; and starts afresh.
     double finish(double boxes, std::span<const double> inverse_scale, IterationEstimate& to) {
@@ -84,6 +99,38 @@ class BoxMoments {
     std::vector<double> mean_, run_mean_, least_, greatest_, products_;
 };
 
+// Of a jump whose points all lie on one side of it within its box, no variance tells. Where means of neighbours differ
+// far more than theirs from the means beyond them, and than the values within either, a jump of that size lies anywhere in
+// the box with fewer points n, and none was drawn beyond it: the square of the part that was missed is 2 / ((n + 2)(n + 3))
+// of the square of the jump on average. Adds it to the covariance, and to `variances`, by which points are allotted.
+void add_jumps(const BoxLine& line, std::span<const std::uint32_t> counts,
+               std::span<const double> inverse_scale, std::span<double> variances, IterationEstimate& to) {
+    constexpr double far_more = 9; // squares
+    const std::size_t boxes = counts.size(), m = to.value.size();
+    const double volume = 1 / static_cast<double>(boxes);
+    const std::size_t stride = to.covariance.size() == m ? 1 : m + 1;
+    for (std::size_t c = 0; c < m; ++c) {
+        const auto square = [&](std::size_t h) {
+            const double step = line.means[(h + 1) * m + c] - line.means[h * m + c];
+            return step * step;
+        };
+        for (std::size_t h = 0; h + 1 < boxes && boxes > 2; ++h) {
+            const double jump = square(h);
+            const double beside = std::max(h > 0 ? square(h - 1) : 0, h + 2 < boxes ? square(h + 1) : 0);
+            // A slope has steps between means of sqrt(12) standard deviations within.
+            const double within = 12 * std::max(line.variances[h * m + c], line.variances[(h + 1) * m + c]);
+            if (!(jump > far_more * std::max(beside, within))) continue;
+            const std::size_t fewer = counts[h] < counts[h + 1] ? h : h + 1;
+            const double n = counts[fewer];
+            const double missed = volume * volume * jump * 2 / ((n + 2) * (n + 3));
+            to.covariance[c * stride] += missed;
+            to.largest_variance[c] = std::max(to.largest_variance[c], missed);
+            const double spread = jump * inverse_scale[c] * inverse_scale[c] / (n + 2);
+            for (std::size_t k : {h, h + 1}) variances[k] = std::max(variances[k], spread);
+        }
+    }
+}
+
 struct IterationSum {
     IterationEstimate estimate;
     MapInsight insight;
@@ -97,6 +144,12 @@ struct IterationSum {
                 std::max(estimate.largest_variance[c], later.estimate.largest_variance[c]);
         insight.merge(later.insight);
     }
+};
+
+// What tasks write, each for its own boxes.
+struct BoxOutputs {
+    std::span<double> variances;
+    BoxLine* line; // null: the boxes lie in several variables
 };
 
 // Boxes that one task takes, and the numbers of its points.
@@ -128,8 +181,13 @@ class StratifiedVegas final : public VegasEstimator {
         cubes.resize(std::clamp<std::uint64_t>(points / points_per_box, 1, most_boxes));
         const std::vector<std::uint32_t> counts = cubes.allocate(points, settings_.beta);
         std::vector<double> variances(counts.size());
-        auto sum = sample(next, cubes, counts, variances, request.cancel);
+        std::optional<BoxLine> line;
+        if (problem_.evaluator.dimensions() == 1)
+            line.emplace(static_cast<std::size_t>(problem_.evaluator.components()), counts.size());
+        const BoxOutputs boxes{variances, line ? &*line : nullptr};
+        auto sum = sample(next, cubes, counts, boxes, request.cancel);
         if (!sum) return StepOutcome::cancelled;
+        if (line) add_jumps(*line, counts, next.inverse_scale, variances, sum->estimate);
         std::uint64_t taken = 0;
         for (std::uint32_t n : counts) taken += n;
         used += taken;
@@ -184,8 +242,8 @@ class StratifiedVegas final : public VegasEstimator {
     }
 
     std::optional<IterationSum> sample(const VegasState& next, const Hypercubes& cubes,
-                                       const std::vector<std::uint32_t>& counts,
-                                       std::vector<double>& variances, const CancelFlag* cancel) const {
+                                       const std::vector<std::uint32_t>& counts, const BoxOutputs& outputs,
+                                       const CancelFlag* cancel) const {
         std::vector<Task> tasks;
         std::uint64_t point = 0;
         for (std::size_t h = 0; h < counts.size(); ++h) {
@@ -194,7 +252,7 @@ class StratifiedVegas final : public VegasEstimator {
             tasks.back().end = h + 1;
             tasks.back().end_point = point += counts[h];
         }
-        if (!device_) return sample(next, cubes, counts, tasks, {}, point, variances, cancel);
+        if (!device_) return sample(next, cubes, counts, tasks, {}, point, outputs, cancel);
         upload(next.map, cubes, counts);
         std::optional<IterationSum> all;
         for (std::size_t begin = 0; begin < tasks.size();) {
@@ -205,7 +263,7 @@ class StratifiedVegas final : public VegasEstimator {
             // A box may have more points than fit into a block: its task draws them piece by piece.
             if (tasks[end - 1].end_point - first <= size) draw(next, drawn, first, tasks[end - 1].end_point);
             auto sum = sample(next, cubes, counts, std::span(tasks).subspan(begin, end - begin), drawn, point,
-                              variances, cancel);
+                              outputs, cancel);
             if (!sum) return std::nullopt;
             if (all)
                 all->merge(*sum);
@@ -234,12 +292,12 @@ class StratifiedVegas final : public VegasEstimator {
     std::optional<IterationSum> sample(const VegasState& next, const Hypercubes& cubes,
                                        const std::vector<std::uint32_t>& counts, std::span<const Task> tasks,
                                        const DrawnPoints& drawn, std::uint64_t all_points,
-                                       std::vector<double>& variances, const CancelFlag* cancel) const {
+                                       const BoxOutputs& outputs, const CancelFlag* cancel) const {
         return parallel_reduce_ordered(
             static_cast<std::int64_t>(tasks.size()),
             [&](std::int64_t t) {
                 return run(next, cubes, counts, tasks[static_cast<std::size_t>(t)], drawn, all_points,
-                           variances);
+                           outputs);
             },
             [](IterationSum a, const IterationSum& b) {
                 a.merge(b);
@@ -250,7 +308,7 @@ class StratifiedVegas final : public VegasEstimator {
 
     IterationSum run(const VegasState& next, const Hypercubes& cubes,
                      const std::vector<std::uint32_t>& counts, const Task& task, DrawnPoints drawn,
-                     std::uint64_t all_points, std::vector<double>& variances) const {
+                     std::uint64_t all_points, const BoxOutputs& outputs) const {
         const Evaluator& g = problem_.evaluator;
         const int m = g.components(), dimensions = g.dimensions();
         const double boxes = static_cast<double>(counts.size());
@@ -305,7 +363,8 @@ class StratifiedVegas final : public VegasEstimator {
                 const double relative_weight = static_cast<double>(all_points) / (boxes * counts[k]);
                 sum.insight.tail.add(relative_weight * moments.largest_deviation());
                 ++sum.insight.tail_values;
-                variances[k] = moments.finish(boxes, next.inverse_scale, sum.estimate);
+                if (outputs.line) moments.note(k, *outputs.line);
+                outputs.variances[k] = moments.finish(boxes, next.inverse_scale, sum.estimate);
             }
             first += n;
         }

@@ -23,20 +23,15 @@ double size_of(const Tally& tally, std::size_t c) {
                      std::isfinite(tally.standard_error[c]) ? tally.standard_error[c] : 0.0});
 }
 
-void save_witness(StateWriter& state, const Witness& w) {
-    state.put(w.u);
-    state.put(w.value);
-    state.put(w.volume);
-    state.put(w.extent);
+template <typename T>
+void save_all(StateWriter& state, const std::vector<T>& all) {
+    state.put(static_cast<std::uint64_t>(all.size()));
+    for (const T& one : all) save(state, one);
 }
 
-Witness load_witness(StateReader& state) {
-    Witness w;
-    w.u = state.get_doubles();
-    w.value = state.get_doubles();
-    w.volume = state.get_double();
-    w.extent = state.get_doubles();
-    return w;
+template <typename T>
+void load_all(StateReader& state, std::vector<T>& all) {
+    for (std::uint64_t n = state.get_word(); n > 0; --n) load(state, all.emplace_back());
 }
 
 } // namespace
@@ -61,9 +56,13 @@ void Evidence::rescale(std::span<const double> exponents) {
     const auto rescaled = [&](double x, std::size_t c) {
         return std::ldexp(x, static_cast<int>(exponents[c]));
     };
-    for (auto* all : {&look_.peaks, &look_.witnesses})
-        for (Witness& w : *all)
+    const auto rescale_all = [&](std::vector<Witness>& all) {
+        for (Witness& w : all)
             for (std::size_t c = 0; c < w.value.size(); ++c) w.value[c] = rescaled(w.value[c], c);
+    };
+    rescale_all(look_.peaks);
+    rescale_all(look_.witnesses);
+    for (SlowShells& slow : look_.slow) rescale_all(slow.shells);
     for (std::size_t c = 0; c < examined_.size(); ++c) {
         examined_[c].size = rescaled(examined_[c].size, c);
         examined_[c].unresolved = rescaled(examined_[c].unresolved, c);
@@ -122,6 +121,11 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         density->pdf(at, q);
         return q[0];
     };
+    std::vector<std::vector<double>> slow_densities;
+    for (const SlowShells& slow : look_.slow) {
+        slow_densities.emplace_back();
+        for (const Witness& w : slow.shells) slow_densities.back().push_back(q_at(w.u));
+    }
     std::vector<double> least(tally.standard_error);
     for (std::size_t c = 0; c < tally.value.size(); ++c) {
         const double tolerance = std::max(request.tolerance(c, tally.value[c]), tally.standard_error[c]);
@@ -154,6 +158,20 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
             tally.warnings.emplace_back(text.data());
             least[c] += unresolved;
         }
+        if (!tally.statistical) continue;
+        double missed = 0;
+        const SlowShells* at = nullptr;
+        for (std::size_t i = 0; i < look_.slow.size(); ++i) {
+            const double mass = unreached(look_.slow[i], c, slow_densities[i], points);
+            if (mass > missed) missed = mass, at = &look_.slow[i];
+        }
+        if (at && missed > tolerance) {
+            std::snprintf(text.data(), text.size(),
+                          "about %.2g of the integral lies closer to %s than the points reach", missed,
+                          place(at->shells.back().u).substr(5).c_str());
+            tally.warnings.emplace_back(text.data());
+            least[c] = std::hypot(least[c], missed);
+        }
     }
     raise_standard_errors(least, tally);
 }
@@ -162,10 +180,9 @@ void Evidence::save(StateWriter& state) const {
     largest_.save(state);
     state.put(evaluations_);
     state.put(std::string_view(divergence_));
-    state.put(static_cast<std::uint64_t>(look_.witnesses.size()));
-    for (const Witness& w : look_.witnesses) save_witness(state, w);
-    state.put(static_cast<std::uint64_t>(look_.peaks.size()));
-    for (const Witness& p : look_.peaks) save_witness(state, p);
+    save_all(state, look_.witnesses);
+    save_all(state, look_.peaks);
+    save_all(state, look_.slow);
     state.put(look_.evaluations);
     state.put(look_.unresolved);
     for (const Examined& e : examined_) {
@@ -180,8 +197,9 @@ void Evidence::load(StateReader& state) {
     evaluations_ = state.get_word();
     divergence_ = state.get_text();
     look_ = {};
-    for (std::uint64_t n = state.get_word(); n > 0; --n) look_.witnesses.push_back(load_witness(state));
-    for (std::uint64_t n = state.get_word(); n > 0; --n) look_.peaks.push_back(load_witness(state));
+    load_all(state, look_.witnesses);
+    load_all(state, look_.peaks);
+    load_all(state, look_.slow);
     look_.evaluations = state.get_word();
     look_.unresolved = state.get_doubles();
     for (Examined& e : examined_) {

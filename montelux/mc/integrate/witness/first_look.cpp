@@ -22,7 +22,7 @@ constexpr std::array<double, 6> ladder{3, 8, 15, 24, 36, 50};
 constexpr double suspicious = 0.2; // of the inner shells' masses beside the outer ones'
 constexpr double matters = 1e-3;   // of the greatest mass of a shell: a difference between two
 constexpr double outstanding = 16; // times the median of the look
-constexpr std::size_t most_peaks = 3;
+constexpr std::size_t most_peaks = 3, most_slow = 8;
 constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 constexpr std::size_t most_anchors = 16; // of a variable
 
@@ -209,6 +209,58 @@ class Look {
                     }
                     if (n_ == 1) note_unresolved(paths[p], rows, p * ladder.size(), c);
                 }
+        for (std::size_t p = 0; p < walked; ++p) note_slow(paths[p], rows, p * ladder.size());
+    }
+
+    // Keeps a ladder whose masses fall slowly; in several variables, the smaller values of it and of another one to the
+    // same face or corner, since it may lie on a ridge.
+    void note_slow(const Path& path, const std::vector<std::vector<double>>& rows, std::size_t first) {
+        if (look_.slow.size() == most_slow || std::ranges::any_of(path.anchors, [&](const Anchor& a) {
+                return path.side[static_cast<std::size_t>(&a - path.anchors.data())] != 0 && a.u != 0 &&
+                       a.u != 1;
+            }))
+            return;
+        SlowShells slow{path.codimension(), {}, {}};
+        const double finest = std::min(path.finest(), ladder.back()) / ladder.back();
+        for (std::size_t i = 0; i < ladder.size(); ++i) {
+            const double k = ladder[i] * finest;
+            slow.exponents.push_back(k);
+            slow.shells.push_back(
+                {path.at(k), rows[first + i], path.volume(k, std::vector<double>(n_, 1.0))});
+        }
+        if (!any_slow(slow)) return;
+        if (n_ > 1) {
+            if (!affordable(ladder.size())) return;
+            Path other = path;
+            const Point through = generic_point();
+            for (std::size_t d = 0; d < n_; ++d)
+                (path.side[d] != 0 ? other.reach[d] *= 0.3 + 0.7 * random()
+                                   : other.anchors[d].u = through[d]);
+            std::vector<Point> points;
+            for (double k : slow.exponents) points.push_back(other.at(k));
+            const auto seen = raw_(points);
+            for (std::size_t i = 0; i < points.size(); ++i)
+                for (std::size_t c = 0; c < components(); ++c)
+                    slow.shells[i].value[c] =
+                        std::min(std::abs(slow.shells[i].value[c]), std::abs(seen[i][c]));
+            if (!any_slow(slow)) return;
+        }
+        look_.slow.push_back(std::move(slow));
+    }
+
+    bool any_slow(const SlowShells& slow) const {
+        constexpr std::size_t outer = 1, inner = 4;
+        for (std::size_t c = 0; c < components(); ++c) {
+            const auto mass = [&](std::size_t i) {
+                return std::abs(slow.shells[i].value[c]) * slow.shells[i].volume;
+            };
+            if (std::ranges::all_of(slow.shells,
+                                    [c](const Witness& w) { return std::isfinite(w.value[c]); }) &&
+                fall_slowly(mass(outer), mass(inner), slow.exponents[inner] - slow.exponents[outer],
+                            slow.codimension))
+                return true;
+        }
+        return false;
     }
 
     // Looks between shells of a ladder that differ by masses which matter: a rise or a peak may lie there. What lies

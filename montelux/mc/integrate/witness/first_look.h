@@ -8,6 +8,7 @@
 
 #include "montelux/mc/integrate/evaluator.h"
 #include "montelux/mc/integrate/witness/peak.h"
+#include "montelux/mc/integrate/witness/slow_shells.h"
 
 namespace montelux {
 
@@ -20,6 +21,8 @@ struct FirstLook {
     // In one variable, for each component the part of the integral of |g| that lies closer to an end, or farther out, than
     // doubles resolve.
     std::vector<double> unresolved;
+    // Ways to ends along which |g| grows fast, though its mass falls.
+    std::vector<SlowShells> slow;
     // Where the mass of |g| in dyadic shells does not fall, as "x -> 0"; empty where it falls everywhere.
     std::string divergence;
     std::uint64_t evaluations = 0;

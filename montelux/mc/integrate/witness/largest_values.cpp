@@ -21,6 +21,20 @@ std::pair<double, double> range_of(std::span<const double> values) {
 
 } // namespace
 
+void save(StateWriter& state, const Witness& w) {
+    state.put(w.u);
+    state.put(w.value);
+    state.put(w.volume);
+    state.put(w.extent);
+}
+
+void load(StateReader& state, Witness& w) {
+    w.u = state.get_doubles();
+    w.value = state.get_doubles();
+    w.volume = state.get_double();
+    w.extent = state.get_doubles();
+}
+
 LargestValues::LargestValues(int components) : largest_(static_cast<std::size_t>(components)) {}
 
 void LargestValues::add(const PointBatch& u, const ValueBatch& g) {
@@ -86,8 +100,7 @@ void LargestValues::save(StateWriter& state) const {
         state.put(l.size.load());
         state.put(l.negative.load());
         state.put(l.positive.load());
-        state.put(l.witness.u);
-        state.put(l.witness.value);
+        montelux::save(state, l.witness);
     }
 }
 
@@ -97,8 +110,7 @@ void LargestValues::load(StateReader& state) {
         l.size = state.get_double();
         l.negative = state.get<int>() != 0;
         l.positive = state.get<int>() != 0;
-        l.witness.u = state.get_doubles();
-        l.witness.value = state.get_doubles();
+        montelux::load(state, l.witness);
         if (!l.witness.value.empty() && l.witness.value.size() != largest_.size())
             throw Error("the saved state has another number of components");
     }

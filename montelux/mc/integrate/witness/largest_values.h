@@ -20,6 +20,9 @@ struct Witness {
     std::vector<double> extent = {};
 };
 
+void save(StateWriter& state, const Witness& w);
+void load(StateReader& state, Witness& w);
+
 // For each component the point with the largest |g| of all evaluations. Safe to use from several threads; the same
 // points give the same witnesses in any order, as the first in lexicographic order counts among equal values.
 class LargestValues {

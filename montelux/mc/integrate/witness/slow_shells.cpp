@@ -1,0 +1,65 @@
+#include "montelux/mc/integrate/witness/slow_shells.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace montelux {
+namespace {
+
+// Integral of an exponential that has these values at both ends of an interval.
+double between(double first, double last, double length) {
+    if (!(first > 0) || !(last > 0)) return 0;
+    const double logarithm = std::log(first / last);
+    return std::abs(logarithm) < 1e-6 ? first * length : (first - last) / logarithm * length;
+}
+
+} // namespace
+
+bool fall_slowly(double outer_mass, double inner_mass, double exponents_between, int codimension) {
+    return outer_mass > 0 && inner_mass > 0 && std::isfinite(outer_mass) && std::isfinite(inner_mass) &&
+           std::log2(outer_mass / inner_mass) < 0.5 * codimension * exponents_between;
+}
+
+double unreached(const SlowShells& slow, std::size_t c, std::span<const double> q, double points) {
+    const std::size_t count = slow.shells.size();
+    const double n = slow.codimension;
+    std::vector<double> mass, expected; // per unit of the exponent; of the points
+    for (std::size_t i = 0; i < count; ++i) {
+        const Witness& shell = slow.shells[i];
+        mass.push_back(std::abs(shell.value[c]) * shell.volume * n * std::numbers::ln2);
+        expected.push_back(points * q[i] * shell.volume);
+    }
+    double sum = 0;
+    if (expected[0] < 1 && expected[0] > 0)
+        sum += mass[0] * std::min(slow.exponents[0], -std::log2(expected[0]) / n);
+    for (std::size_t i = 0; i + 1 < count; ++i) {
+        if (expected[i + 1] >= 1) continue;
+        const double length = slow.exponents[i + 1] - slow.exponents[i];
+        double reached = 0; // share of the interval
+        if (expected[i] > 1)
+            reached =
+                expected[i + 1] > 0 ? std::log(expected[i]) / std::log(expected[i] / expected[i + 1]) : 0;
+        const double from = mass[i] > 0 ? mass[i] * std::pow(mass[i + 1] / mass[i], reached) : 0;
+        sum += between(from, mass[i + 1], length * (1 - reached));
+    }
+    const double last = slow.exponents[count - 1] - slow.exponents[count - 2];
+    const double fall = mass[count - 1] > 0 ? std::log(mass[count - 2] / mass[count - 1]) / last : 0;
+    if (fall > 0 && expected[count - 1] < 1) sum += mass[count - 1] / fall;
+    return sum;
+}
+
+void save(StateWriter& state, const SlowShells& slow) {
+    state.put(slow.codimension);
+    state.put(slow.exponents);
+    for (const Witness& w : slow.shells) save(state, w);
+}
+
+void load(StateReader& state, SlowShells& slow) {
+    slow.codimension = state.get<int>();
+    slow.exponents = state.get_doubles();
+    slow.shells.resize(slow.exponents.size());
+    for (Witness& w : slow.shells) load(state, w);
+}
+
+} // namespace montelux

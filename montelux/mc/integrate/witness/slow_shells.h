@@ -1,0 +1,31 @@
+// Shells around a point whose masses fall slowly: what lies closer to it than samples reach.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/state_archive.h"
+#include "montelux/mc/integrate/witness/largest_values.h"
+
+namespace montelux {
+
+// Values on the way to a face, an edge or a corner, from outside to inside. Masses of its dyadic shells fall so slowly that
+// uniform points have an infinite variance there: |g| ~ r^-a, where 2 a is at least the codimension.
+struct SlowShells {
+    int codimension = 1;
+    std::vector<Witness> shells;   // with their volumes, of 2^(-codimension k) each
+    std::vector<double> exponents; // k
+};
+
+// Do masses fall so slowly between two shells?
+bool fall_slowly(double outer_mass, double inner_mass, double exponents_between, int codimension);
+
+// Part of the integral of |g_c| that lies closer than the nearest of `points`, as expected by their density q at the
+// shells. Masses follow a power between two shells, and inside the last one.
+double unreached(const SlowShells& slow, std::size_t c, std::span<const double> q, double points);
+
+void save(StateWriter& state, const SlowShells& slow);
+void load(StateReader& state, SlowShells& slow);
+
+} // namespace montelux
