@@ -67,7 +67,9 @@ TEST(ExtremeValues, ComplementsOfRareEventsHaveAnError) {
         for (std::uint64_t seed = 1; seed <= 5; ++seed) {
             const IntegrationResult r = integrate(f, Domain::unit_cube(2), Method::named(name),
                                                   {.evaluations = 8000}, {.seed = seed, .threads = 1});
-            EXPECT_GT(r.standard_error[0], 0.4 / 8000.0) << name << " " << seed;
+            // Vegas allots many points to the box of a hole that it has met.
+            const double least = std::string(name) == "vegas" ? 0.4 : 1;
+            EXPECT_GT(r.standard_error[0], least / 8000.0) << name << " " << seed;
             EXPECT_LT(r.standard_error[0], 8 / 8000.0) << name << " " << seed;
             EXPECT_LT(std::abs(r.value[0] - truth), 5 * r.standard_error[0]) << name << " " << seed;
         }
@@ -107,7 +109,7 @@ TEST(ExtremeValues, InfiniteVarianceGivesAWarning) {
         }
         // Few strata reveal less.
         const bool strata = std::string(name) == "stratified" || std::string(name) == "recursive";
-        EXPECT_GE(infinite, strata ? 2 : 4) << name;
+        EXPECT_GE(infinite, strata ? 2 : 6) << name;
         EXPECT_EQ(finite, 0) << name;
     }
 }

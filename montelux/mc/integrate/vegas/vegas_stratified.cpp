@@ -99,10 +99,10 @@ class BoxMoments {
     std::vector<double> mean_, run_mean_, least_, greatest_, products_;
 };
 
-// Of a jump whose points all lie on one side of it within its box, no variance tells. Where means of neighbours differ
-// far more than theirs from the means beyond them, and than the values within either, a jump of that size lies anywhere in
-// the box with fewer points n, and none was drawn beyond it: the square of the part that was missed is 2 / ((n + 2)(n + 3))
-// of the square of the jump on average. Adds it to the covariance, and to `variances`, by which points are allotted.
+// A jump shows in no variance if all points of its box lie on one side of it. Where the means of two neighbours differ
+// far more than on one side of them, and than the values in the one with fewer points n, a jump of that size lies anywhere in
+// this box, and none was drawn beyond it: the square of the part that was missed is 2 / ((n + 2)(n + 3)) of the
+// square of the jump on average. Adds it to the covariance, and to `variances`, by which points are allotted.
 void add_jumps(const BoxLine& line, std::span<const std::uint32_t> counts,
                std::span<const double> inverse_scale, std::span<double> variances, IterationEstimate& to) {
     constexpr double far_more = 9; // squares
@@ -116,11 +116,14 @@ void add_jumps(const BoxLine& line, std::span<const std::uint32_t> counts,
         };
         for (std::size_t h = 0; h + 1 < boxes && boxes > 2; ++h) {
             const double jump = square(h);
-            const double beside = std::max(h > 0 ? square(h - 1) : 0, h + 2 < boxes ? square(h + 1) : 0);
+            const bool first = h == 0, last = h + 2 == boxes;
+            const double beside = first  ? square(h + 1)
+                                  : last ? square(h - 1)
+                                         : std::min(square(h - 1), square(h + 1));
             // A slope has steps between means of sqrt(12) standard deviations within.
-            const double within = 12 * std::max(line.variances[h * m + c], line.variances[(h + 1) * m + c]);
-            if (!(jump > far_more * std::max(beside, within))) continue;
             const std::size_t fewer = counts[h] < counts[h + 1] ? h : h + 1;
+            const double within = 12 * line.variances[fewer * m + c];
+            if (!(jump > far_more * std::max(beside, within))) continue;
             const double n = counts[fewer];
             const double missed = volume * volume * jump * 2 / ((n + 2) * (n + 3));
             to.covariance[c * stride] += missed;
