@@ -228,6 +228,7 @@ class AutoEstimator final : public Estimator {
             // A cubature with a warning is replaced by sampling.
             tally.ready = tally.ready && tally.warnings.empty() && (agreed_ || !tally.localised);
             tally.localised = tally.localised && !agreed_;
+            if (agreed_) tally.notes.insert(tally.notes.end(), sampled.notes.begin(), sampled.notes.end());
             return tally;
         }
         Tally tally = sampling_->tally();

@@ -36,6 +36,8 @@ constexpr std::uint64_t enough_nonzero = 16;        // non-zero points needed be
 constexpr std::uint64_t few_nonzero = 4;            // the same, where a quarter of all has been explored,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
+constexpr std::uint64_t around_peaks =
+    32; // points around a narrow peak at each scale, times the squared number of variables
 constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
@@ -270,7 +272,7 @@ class AdaptiveEstimator final : public Estimator {
         // If many points have large values, few searches show whether there are peaks at all.
         const bool narrow = trainer_.effective_share() < narrow_peaks;
         trainer_.find_peaks(std::min(request.max_evaluations / 4, (narrow ? 32 : 8) * (60 * n + 3 * n * n)),
-                            narrow ? 5 : 2);
+                            narrow ? 5 : 2, narrow && n > 1 ? around_peaks * n * n : 0);
         phase_ = Phase::train;
         return StepOutcome::advanced;
     }
@@ -403,12 +405,31 @@ class AdaptiveEstimator final : public Estimator {
         else if (trainer_.nonzero() < enough_nonzero)
             warn("only " + std::to_string(trainer_.nonzero()) +
                  " of the exploring points saw anything but zero; other places may have been missed");
+        if (phase_ == Phase::weighted && problem_.evaluator.dimensions() > 1 && trainer_.peaks() > 0 &&
+            trainer_.effective_share() < narrow_peaks)
+            tally.notes.push_back(other_peaks());
         if (heavy) warn("one sample makes up much of the standard error; the weights have a heavy tail");
         if (estimate.one_replicate_stands_out())
             warn("one replicate stands far from the others; the error may be underestimated");
         if (tally.degrees_of_freedom > 0 &&
             chi_squared_p_value(tally.chi_squared, tally.degrees_of_freedom) < disagreement)
             warn("the training rounds disagree with the result");
+    }
+
+    // What a search for peaks excludes: where all of the integral lies in them, points elsewhere tell of others only by
+    // the slopes that lead there.
+    std::string other_peaks() const {
+        constexpr double rule_of_three = 3; // 5 % of probability
+        std::array<char, 160> text;
+        std::snprintf(
+            text.data(), text.size(),
+            "%s found by climbing from %.0f points; another to which less than 1/%.0f of the domain "
+            "slopes would be missed in 5 %% of cases",
+            trainer_.peaks() == 1 ? "one peak was"
+                                  : (std::to_string(trainer_.peaks()) + " peaks were").c_str(),
+            static_cast<double>(trainer_.searched_points()),
+            static_cast<double>(trainer_.searched_points()) / rule_of_three);
+        return text.data();
     }
 
     // What uniform points exclude where all but the known peaks is zero.

@@ -81,7 +81,7 @@ void DensityTrainer::start(SamplePoints&& points) {
     recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
 }
 
-void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
+void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless, std::uint64_t around) {
     if (density_.dimensions() > max_gaussian_dimensions) return;
     // Assigned at the end, so that an exception of the integrand changes nothing.
     std::uint64_t evaluations = 0;
@@ -89,10 +89,14 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless) {
     const DensityFunction h = counted_steering(evaluations, non_finite);
     const Round& seen = recent_.back();
     ModeSearch settings{.fruitless = fruitless, .max_evaluations = max_evaluations};
+    settings.seed = problem_.seed;
+    settings.around = around;
     if (problem_.look) settings.peaks = problem_.look->peaks;
     std::vector<Gaussian> modes = find_modes(h, seen.x, seen.h, settings);
     evaluations_ += evaluations;
     non_finite_.merge(non_finite);
+    peaks_ = modes.size();
+    searched_points_ = seen.h.size();
     if (modes.empty()) return;
     for (Gaussian& g : modes) g = g.widened(1.2);
     density_ = MixtureDensity(density_.dimensions(), {}, std::move(modes));

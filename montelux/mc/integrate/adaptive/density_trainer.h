@@ -30,7 +30,11 @@ class DensityTrainer {
     bool flat_where_nonzero() const { return flat_where_nonzero_; }
 
     // Searches for peaks until this many searches in a row lead to known ones; evaluations() counts the cost.
-    void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless);
+    void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless,
+                    std::uint64_t around = 0);
+    // Peaks that the last search found, and the points from which it chose where to begin.
+    std::uint64_t peaks() const { return peaks_; }
+    std::uint64_t searched_points() const { return searched_points_; }
     // One round of n points, about (a multiple of what the density divides exactly). False when cancelled:
     // nothing changed.
     bool round(std::uint64_t n, const CancelFlag* cancel);
@@ -106,7 +110,7 @@ class DensityTrainer {
     int rounds_ = 0, walks_ = 0;
     bool enriched_ = false, flat_where_nonzero_ = false;
     double relative_variance_ = 0, effective_share_ = 0, uncovered_share_ = 0;
-    std::uint64_t nonzero_ = 0, evaluations_ = 0;
+    std::uint64_t nonzero_ = 0, evaluations_ = 0, peaks_ = 0, searched_points_ = 0;
     NonFiniteCount non_finite_;
 };
 

@@ -43,6 +43,8 @@ void DensityTrainer::save(StateWriter& state) const {
     state.put(uncovered_share_);
     state.put(nonzero_);
     state.put(evaluations_);
+    state.put(peaks_);
+    state.put(searched_points_);
     montelux::save(state, non_finite_);
 }
 
@@ -90,6 +92,8 @@ void DensityTrainer::load(StateReader& state) {
     uncovered_share_ = state.get_double();
     nonzero_ = state.get_word();
     evaluations_ = state.get_word();
+    peaks_ = state.get_word();
+    searched_points_ = state.get_word();
     montelux::load(state, non_finite_);
 }
 

@@ -6,16 +6,22 @@
 #include <limits>
 #include <optional>
 
+#include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/random/hash.h"
+
 namespace montelux {
 namespace {
 
 constexpr double nowhere = -std::numeric_limits<double>::max();
 constexpr double least_excess = 3; // of log h above what known modes explain, for another search
-constexpr double first_difference = 0.02, least_difference = 1e-8; // of coordinates, in widths of the cube
-constexpr double longest_step = 0.3;                               // of a coordinate
+constexpr double first_difference = 0.02, close_difference = 5e-4,
+                 least_difference = 1e-8; // of coordinates, in widths of the cube
+constexpr double longest_step = 0.3;      // of a coordinate
 constexpr std::size_t whole_curvature =
     10; // variables up to which a step takes the whole matrix of curvatures
-constexpr double least_coordinate = 1e-12; // distance from the faces
+constexpr std::array survey_scales{3.0, 6.0, 12.0, 24.0}; // standard deviations around a mode
+constexpr std::size_t most_surveyed = 6;                  // modes
+constexpr double least_coordinate = 1e-12;                // distance from the faces
 
 class Climber {
   public:
@@ -279,6 +285,7 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
     Climber climber(h, x.dimensions(), settings.max_evaluations);
     const std::size_t n = x.count();
     std::vector<Gaussian> modes;
+    std::vector<double> tops; // log h at the modes
     std::vector<double> excess(
         n); // log h above the highest of the known modes' Gaussians, scaled to their tops
     for (std::size_t i = 0; i < n; ++i) excess[i] = h_at_x[i] > 0 ? std::log(h_at_x[i]) : nowhere;
@@ -291,6 +298,7 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
             excess[i] = log_h[i] == nowhere ? nowhere : log_h[i] - explained[i];
         }
         modes.push_back(std::move(mode));
+        tops.push_back(top);
     };
     auto is_known = [&](const std::vector<double>& at) {
         return std::any_of(modes.begin(), modes.end(), [&](const Gaussian& g) {
@@ -306,6 +314,20 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
         if (!mode) mode = diagonal_gaussian(at, peak.extent);
         if (mode) add(std::move(*mode), top);
     }
+    // Climbs from a point where h exceeds the known modes, and adds the mode there, if it is a new one.
+    const auto climb_from = [&](std::vector<double> begin, bool exceeds) {
+        std::vector<double> at = begin;
+        double top = climber.climb(at);
+        if (exceeds && is_known(at)) {
+            // What exceeds the known modes is another one's: its slope shows in closer differences.
+            at = begin;
+            top = climber.climb(at, close_difference);
+        }
+        if (is_known(at)) return false;
+        std::optional<Gaussian> mode = climber.laplace(at, top, settings.widest);
+        if (mode) add(std::move(*mode), top);
+        return mode.has_value();
+    };
     int fruitless = 0, remote = 0;
     while (climber.left() > 0 && fruitless < settings.fruitless &&
            static_cast<int>(modes.size()) < settings.most_modes) {
@@ -318,16 +340,34 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
         const auto index = static_cast<std::size_t>(start - excess.begin());
         x.gather(index, point.data());
         excess[index] = log_h[index] = nowhere; // each start once
-        const double top = climber.climb(point);
-        std::optional<Gaussian> mode;
-        if (!is_known(point)) mode = climber.laplace(point, top, settings.widest);
-        if (!mode) {
-            ++fruitless;
-            continue;
-        }
-        fruitless = 0;
-        add(std::move(*mode), top);
+        fruitless = climb_from(point, remote == 0) ? 0 : fruitless + 1;
     }
+    // Narrow modes beside wide ones: a small part of the cube leads to them, but a fair one of their neighbourhood.
+    for (std::size_t k = 0; settings.around > 0 && k < std::min(modes.size(), most_surveyed); ++k)
+        for (double scale : survey_scales) {
+            if (climber.left() < 2 * settings.around) break;
+            PointBuffer u(settings.around, x.dimensions()), drawn(settings.around, x.dimensions());
+            fill_random(u, hash_key(settings.seed, k), static_cast<std::uint32_t>(scale), 0);
+            modes[k].widened(scale).sample(u, drawn);
+            std::vector<std::vector<double>> places(settings.around, point);
+            for (std::size_t i = 0; i < places.size(); ++i) drawn.view().gather(i, places[i].data());
+            const std::vector<double> h_there = climber.log_at(places);
+            std::vector<char> tried(places.size());
+            for (;;) {
+                double most = least_excess;
+                std::optional<std::size_t> best;
+                for (std::size_t i = 0; i < places.size(); ++i) {
+                    if (tried[i] || h_there[i] == nowhere) continue;
+                    double known = nowhere;
+                    for (std::size_t j = 0; j < modes.size(); ++j)
+                        known = std::max(known, tops[j] - 0.5 * modes[j].squared_distance(places[i]));
+                    if (h_there[i] - known > most) most = h_there[i] - known, best = i;
+                }
+                if (!best || climber.left() == 0) break;
+                tried[*best] = 1;
+                if (!climb_from(places[*best], true)) break;
+            }
+        }
     return modes;
 }
 
