@@ -24,9 +24,16 @@ std::optional<ParetoFit> fit_pareto(std::span<const double> exceedances) {
     if (!(quartile > 0 && std::isfinite(largest))) return std::nullopt;
     // In units of the largest, so that nothing over- or underflows.
     auto shape_for = [&](double theta) {
-        double sum = 0;
-        for (double x : exceedances) sum += std::log1p(-theta * (x / largest));
-        return sum / static_cast<double>(n);
+        // The logarithm of a product, cut where it might leave the range of doubles.
+        constexpr double far = 1e100;
+        double sum = 0, product = 1;
+        for (double x : exceedances) {
+            product *= 1 - theta * (x / largest);
+            if (product < far && product > 1 / far) continue;
+            sum += std::log(product);
+            product = 1;
+        }
+        return (sum + std::log(product)) / static_cast<double>(n);
     };
     // Values of theta = -shape / scale, weighted by their profile likelihood.
     const auto m = 30 + static_cast<std::size_t>(std::sqrt(static_cast<double>(n)));
@@ -62,6 +69,7 @@ ParetoTail ParetoTail::empty() const {
 
 void ParetoTail::insert(double value) {
     kept_.push_back(value);
+    known_.reset();
     if (kept_.size() >= 2 * capacity_) prune();
 }
 
@@ -81,11 +89,17 @@ std::vector<double> ParetoTail::values() const {
 
 void ParetoTail::restore(std::vector<double> values) {
     kept_ = std::move(values);
+    known_.reset();
     floor_ = 0;
     if (kept_.size() >= capacity_) prune();
 }
 
 std::optional<ParetoFit> ParetoTail::fit(std::uint64_t n) const {
+    if (!known_ || known_->n != n) known_ = Known{n, fit_anew(n)};
+    return known_->fit;
+}
+
+std::optional<ParetoFit> ParetoTail::fit_anew(std::uint64_t n) const {
     const std::vector<double> sorted = values();
     const double points = std::min(3 * std::sqrt(static_cast<double>(n)), static_cast<double>(n) / 5);
     // The largest value below the tail is its threshold.

@@ -52,16 +52,22 @@ class ParetoTail {
     void restore(std::vector<double> values);
 
     // The law of the tail of n values, of which these are the largest: of the 3 sqrt(n) largest, but of no
-    // more than a fifth and no more than are kept.
+    // more than a fifth and no more than are kept. Remembers its answer: for one thread at a time.
     std::optional<ParetoFit> fit(std::uint64_t n) const;
 
   private:
+    std::optional<ParetoFit> fit_anew(std::uint64_t n) const;
     void insert(double value);
     void prune();
 
     std::size_t capacity_ = 1024;
     double floor_ = 0;         // smaller values are not among the largest
     std::vector<double> kept_; // in no order, less than twice the capacity
+    struct Known {
+        std::uint64_t n;
+        std::optional<ParetoFit> fit;
+    };
+    mutable std::optional<Known> known_; // of the values kept now
 };
 
 } // namespace montelux

@@ -36,8 +36,8 @@ constexpr std::uint64_t enough_nonzero = 16;        // non-zero points needed be
 constexpr std::uint64_t few_nonzero = 4;            // the same, where a quarter of all has been explored,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
-constexpr std::uint64_t around_peaks =
-    32; // points around a narrow peak at each scale, times the squared number of variables
+constexpr std::uint64_t survey_points = 128,
+                        most_survey = 4096;  // around peaks, times the squared number of variables
 constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
@@ -272,7 +272,8 @@ class AdaptiveEstimator final : public Estimator {
         // If many points have large values, few searches show whether there are peaks at all.
         const bool narrow = trainer_.effective_share() < narrow_peaks;
         trainer_.find_peaks(std::min(request.max_evaluations / 4, (narrow ? 32 : 8) * (60 * n + 3 * n * n)),
-                            narrow ? 5 : 2, narrow && n > 1 ? around_peaks * n * n : 0);
+                            narrow ? 5 : 2,
+                            narrow && n > 1 ? std::min(survey_points * n * n, most_survey) : 0);
         phase_ = Phase::train;
         return StepOutcome::advanced;
     }

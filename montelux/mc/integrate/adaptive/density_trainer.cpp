@@ -81,7 +81,7 @@ void DensityTrainer::start(SamplePoints&& points) {
     recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
 }
 
-void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless, std::uint64_t around) {
+void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless, std::uint64_t survey) {
     if (density_.dimensions() > max_gaussian_dimensions) return;
     // Assigned at the end, so that an exception of the integrand changes nothing.
     std::uint64_t evaluations = 0;
@@ -90,7 +90,7 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless, st
     const Round& seen = recent_.back();
     ModeSearch settings{.fruitless = fruitless, .max_evaluations = max_evaluations};
     settings.seed = problem_.seed;
-    settings.around = around;
+    settings.survey = survey;
     if (problem_.look) settings.peaks = problem_.look->peaks;
     std::vector<Gaussian> modes = find_modes(h, seen.x, seen.h, settings);
     evaluations_ += evaluations;

@@ -31,7 +31,7 @@ class DensityTrainer {
 
     // Searches for peaks until this many searches in a row lead to known ones; evaluations() counts the cost.
     void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless,
-                    std::uint64_t around = 0);
+                    std::uint64_t survey = 0);
     // Peaks that the last search found, and the points from which it chose where to begin.
     std::uint64_t peaks() const { return peaks_; }
     std::uint64_t searched_points() const { return searched_points_; }

@@ -20,8 +20,8 @@ constexpr double longest_step = 0.3;      // of a coordinate
 constexpr std::size_t whole_curvature =
     10; // variables up to which a step takes the whole matrix of curvatures
 constexpr std::array survey_scales{3.0, 6.0, 12.0, 24.0}; // standard deviations around a mode
-constexpr std::size_t most_surveyed = 6;                  // modes
-constexpr double least_coordinate = 1e-12;                // distance from the faces
+constexpr std::size_t surveyed_modes = 2;
+constexpr double least_coordinate = 1e-12; // distance from the faces
 
 class Climber {
   public:
@@ -343,13 +343,14 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
         fruitless = climb_from(point, remote == 0) ? 0 : fruitless + 1;
     }
     // Narrow modes beside wide ones: a small part of the cube leads to them, but a fair one of their neighbourhood.
-    for (std::size_t k = 0; settings.around > 0 && k < std::min(modes.size(), most_surveyed); ++k)
+    const std::uint64_t points = settings.survey / (surveyed_modes * survey_scales.size());
+    for (std::size_t k = 0; points > 0 && k < std::min(modes.size(), surveyed_modes); ++k)
         for (double scale : survey_scales) {
-            if (climber.left() < 2 * settings.around) break;
-            PointBuffer u(settings.around, x.dimensions()), drawn(settings.around, x.dimensions());
+            if (climber.left() < 2 * points) break;
+            PointBuffer u(points, x.dimensions()), drawn(points, x.dimensions());
             fill_random(u, hash_key(settings.seed, k), static_cast<std::uint32_t>(scale), 0);
             modes[k].widened(scale).sample(u, drawn);
-            std::vector<std::vector<double>> places(settings.around, point);
+            std::vector<std::vector<double>> places(points, point);
             for (std::size_t i = 0; i < places.size(); ++i) drawn.view().gather(i, places[i].data());
             const std::vector<double> h_there = climber.log_at(places);
             std::vector<char> tried(places.size());
