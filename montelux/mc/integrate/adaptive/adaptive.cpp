@@ -36,8 +36,9 @@ constexpr std::uint64_t enough_nonzero = 16;        // non-zero points needed be
 constexpr std::uint64_t few_nonzero = 4;            // the same, where a quarter of all has been explored,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
-constexpr std::uint64_t survey_points = 128,
-                        most_survey = 4096;  // around peaks, times the squared number of variables
+// Evaluations around narrow peaks, times the squared number of variables; where there are more variables, too few of
+// any number of points come upon another peak.
+constexpr std::uint64_t survey_points = 128, most_surveyed = 6;
 constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
@@ -273,7 +274,7 @@ class AdaptiveEstimator final : public Estimator {
         const bool narrow = trainer_.effective_share() < narrow_peaks;
         trainer_.find_peaks(std::min(request.max_evaluations / 4, (narrow ? 32 : 8) * (60 * n + 3 * n * n)),
                             narrow ? 5 : 2,
-                            narrow && n > 1 ? std::min(survey_points * n * n, most_survey) : 0);
+                            narrow && n > 1 && n <= most_surveyed ? survey_points * n * n : 0);
         phase_ = Phase::train;
         return StepOutcome::advanced;
     }
@@ -286,7 +287,8 @@ class AdaptiveEstimator final : public Estimator {
             trainer_.rounds() > 3 && variance != previous_variance_ && variance > 0.9 * previous_variance_;
         previous_variance_ = variance;
         // Larger rounds if more of the same size do not improve the fit.
-        const double trained = static_cast<double>(trainer_.evaluations() + uniform_.evaluations());
+        const double trained = static_cast<double>(trainer_.evaluations() - trainer_.search_evaluations() +
+                                                   uniform_.evaluations());
         if (stuck || trained > 5 * static_cast<double>(round_points_))
             round_points_ = std::min(4 * round_points_, max_training_points);
         // A share of the allowed evaluations, larger if these are few; or of the expected cost of the target

@@ -97,6 +97,7 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless, st
     non_finite_.merge(non_finite);
     peaks_ = modes.size();
     searched_points_ = seen.h.size();
+    search_evaluations_ += evaluations;
     if (modes.empty()) return;
     for (Gaussian& g : modes) g = g.widened(1.2);
     density_ = MixtureDensity(density_.dimensions(), {}, std::move(modes));

@@ -35,6 +35,7 @@ class DensityTrainer {
     // Peaks that the last search found, and the points from which it chose where to begin.
     std::uint64_t peaks() const { return peaks_; }
     std::uint64_t searched_points() const { return searched_points_; }
+    std::uint64_t search_evaluations() const { return search_evaluations_; } // of all searches
     // One round of n points, about (a multiple of what the density divides exactly). False when cancelled:
     // nothing changed.
     bool round(std::uint64_t n, const CancelFlag* cancel);
@@ -110,7 +111,7 @@ class DensityTrainer {
     int rounds_ = 0, walks_ = 0;
     bool enriched_ = false, flat_where_nonzero_ = false;
     double relative_variance_ = 0, effective_share_ = 0, uncovered_share_ = 0;
-    std::uint64_t nonzero_ = 0, evaluations_ = 0, peaks_ = 0, searched_points_ = 0;
+    std::uint64_t nonzero_ = 0, evaluations_ = 0, peaks_ = 0, searched_points_ = 0, search_evaluations_ = 0;
     NonFiniteCount non_finite_;
 };
 

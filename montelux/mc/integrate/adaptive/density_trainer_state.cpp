@@ -45,6 +45,7 @@ void DensityTrainer::save(StateWriter& state) const {
     state.put(evaluations_);
     state.put(peaks_);
     state.put(searched_points_);
+    state.put(search_evaluations_);
     montelux::save(state, non_finite_);
 }
 
@@ -94,6 +95,7 @@ void DensityTrainer::load(StateReader& state) {
     evaluations_ = state.get_word();
     peaks_ = state.get_word();
     searched_points_ = state.get_word();
+    search_evaluations_ = state.get_word();
     montelux::load(state, non_finite_);
 }
 

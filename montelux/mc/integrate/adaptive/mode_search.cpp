@@ -18,7 +18,7 @@ constexpr double first_difference = 0.02, close_difference = 5e-4,
                  least_difference = 1e-8; // of coordinates, in widths of the cube
 constexpr double longest_step = 0.3;      // of a coordinate
 constexpr std::size_t whole_curvature =
-    10; // variables up to which a step takes the whole matrix of curvatures
+    6; // variables up to which a step takes the whole matrix of curvatures
 constexpr std::array survey_scales{3.0, 6.0, 12.0, 24.0}; // standard deviations around a mode
 constexpr std::size_t surveyed_modes = 2;
 constexpr double least_coordinate = 1e-12; // distance from the faces
