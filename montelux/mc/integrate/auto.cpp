@@ -20,7 +20,8 @@ namespace {
 constexpr int region_counts = 4; // with fewer variables a region is affordable even with few evaluations
 constexpr int cubature_dimensions = 8; // with more, a region costs more points than a first step of sampling
 constexpr double least_pilot = 1500;   // evaluations of cubature before it is judged,
-constexpr double pilot_share = 0.25;   // or this share of what sampling is expected to need
+constexpr double pilot_share = 0.25;   // or this share of what sampling is expected to need,
+constexpr double pilot_of_all = 0.125; // or of a fixed number of evaluations; the same for sampling after it
 // Errors that fall as a smaller power of the evaluations indicate a pole without an integral: the halves that
 // contain it converge on it.
 constexpr double slowest_of_one_variable = 0.25;
@@ -126,6 +127,12 @@ class AutoEstimator final : public Estimator {
         const bool targeted = request.targeted();
         const std::uint64_t rules = cubature_->tally().evaluations;
         const std::uint64_t sampled = sampling_->tally().evaluations;
+        if (!targeted && !rules_end_ && !returned_ && sampling_is_worse(request)) {
+            switched_ = false;
+            returned_ = true;
+            reason_ = "sampling did worse than cubature before it";
+            return step(request);
+        }
         const bool chance = targeted && !rules_end_;
         if (chance && sampled >= patience &&
             static_cast<double>(rules) < second_share * static_cast<double>(sampled))
@@ -133,6 +140,21 @@ class AutoEstimator final : public Estimator {
         const StepOutcome outcome = sampling_->step(request);
         const bool left = outcome == StepOutcome::exhausted || outcome == StepOutcome::finished;
         return left && chance ? step_rules(request) : outcome;
+    }
+
+    // Without a target: after its share of the evaluations, and as many as cubature had, can sampling still become as good
+    // as cubature was?
+    bool sampling_is_worse(const StepRequest& request) const {
+        const Tally rule = cubature_->tally(), sampled = sampling_->tally();
+        const double made = static_cast<double>(sampled.evaluations);
+        const double share = made / (made + static_cast<double>(request.max_evaluations));
+        if (share < pilot_of_all || sampled.evaluations < rule.evaluations || !rule.warnings.empty() ||
+            !has_errors(sampled))
+            return false;
+        bool worse = true;
+        for (std::size_t c = 0; c < rule.value.size(); ++c)
+            worse = worse && rule.standard_error[c] < share * sampled.standard_error[c];
+        return worse;
     }
 
     StepOutcome step_rules(const StepRequest& request) {
@@ -246,7 +268,8 @@ class AutoEstimator final : public Estimator {
     }
     void save(StateWriter& state) const override {
         state.put(std::uint64_t{switched_} | std::uint64_t{diverges_} << 1 | std::uint64_t{rules_end_} << 2 |
-                  std::uint64_t{comparing_} << 3 | std::uint64_t{agreed_} << 4);
+                  std::uint64_t{comparing_} << 3 | std::uint64_t{agreed_} << 4 |
+                  std::uint64_t{returned_} << 5);
         state.put(reason_);
         state.put(ratios_);
         state.put(costs_);
@@ -261,6 +284,7 @@ class AutoEstimator final : public Estimator {
         rules_end_ = (flags & 4) != 0;
         comparing_ = (flags & 8) != 0;
         agreed_ = (flags & 16) != 0;
+        returned_ = (flags & 32) != 0;
         reason_ = state.get_text();
         ratios_ = state.get_doubles();
         costs_ = state.get_doubles();
@@ -339,7 +363,8 @@ class AutoEstimator final : public Estimator {
         const bool hopeless =
             decisive && ratio * std::pow(spent / (spent + left), hopeful_rate) > alternative;
         // Few evaluations are not worth a long pilot.
-        if (spent < std::min(least_pilot, 0.25 * left) && !hopeless) return;
+        const double pilot = std::max(std::min(least_pilot, 0.25 * left), pilot_of_all * (spent + left));
+        if (returned_ || (spent < pilot && !hopeless)) return;
         const double reached = ratio * std::pow(spent / (spent + left), hopeless ? hopeful_rate : rate);
         if (std::isinf(reached))
             give_up("cubature's value is still zero");
@@ -365,6 +390,7 @@ class AutoEstimator final : public Estimator {
     bool switched_ = false;
     bool comparing_ = false, agreed_ = false; // cubature with sampling
     bool rules_end_ = false;                  // cubature can do no more
+    bool returned_ = false;                   // to cubature, for the rest of a fixed number of evaluations
     bool diverges_ = false;                   // neither method could do more
     std::string reason_;
     double begin_ = 0;                   // evaluations before the problem that is judged

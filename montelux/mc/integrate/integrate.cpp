@@ -31,7 +31,7 @@ using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t default_evaluations = 1'000'000;
 constexpr std::uint64_t no_limit = ~std::uint64_t{0};
 constexpr std::uint64_t most_of_look = 1024;  // evaluations,
-constexpr std::uint64_t share_of_look = 32;   // and one over the largest share of the limit
+constexpr std::uint64_t share_of_look = 16;   // and one over the largest share of the limit
 constexpr std::uint64_t least_for_look = 512; // smaller limits leave no room for one
 // Evaluations after which the largest values are examined, and the factor of them until the next time.
 constexpr std::uint64_t first_examination = 8192, next_examination = 8;

@@ -197,7 +197,8 @@ class AdaptiveEstimator final : public Estimator {
         trainer_.start(std::move(drawn));
         const std::uint64_t left = request.max_evaluations - sums->evaluations;
         const bool room = uniform_.points() >= explored_ && left >= smallest_budget * round_points_;
-        if (room && misses_a_peak(cube_, uniform_)) {
+        if (left >= smallest_budget * least_round && misses_a_peak(cube_, uniform_)) {
+            if (!room) round_points_ = std::clamp(left / 8, least_round, round_points_);
             known_peaks_ = problem_.look->peaks.size();
             phase_ = Phase::search;
         } else if (!room || uniform_will_do(request))

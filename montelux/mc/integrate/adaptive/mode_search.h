@@ -17,9 +17,8 @@ struct ModeSearch {
     int fruitless = 5;                 // searches in a row that lead to a known mode before the end
     int remote = 3;                    // searches from points far from all modes, although h is small there
     std::uint64_t max_evaluations = 0; // in all
-    std::uint64_t survey =
-        0; // points around the first modes, at scales, which may lead to others that are narrow
-    std::uint64_t seed = 0;           // of these points
+    // Points around the first modes, at scales, which may lead to others that are narrow; and their seed.
+    std::uint64_t survey = 0, seed = 0;
     double widest = 0.3;              // largest standard deviation of a Gaussian, of the cube's width
     std::span<const Witness> peaks{}; // known tops with their extents, which come first
 };

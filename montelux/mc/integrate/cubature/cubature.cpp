@@ -60,7 +60,8 @@ class CubatureEstimator final : public Estimator {
         std::vector<std::size_t> parents;
         // In one dimension, and in four and more, the cube is first evaluated by the cheaper rule, which may
         // suffice.
-        if (!regions_.empty() && reached(request) && !verification_.recalled(regions_.count())) {
+        if (!regions_.empty() && !verification_.recalled(regions_.count()) &&
+            (reached(request) || (!request.targeted() && verification_.outgrown(regions_.count())))) {
             if (verification_.recall(regions_, totals_.value(), totals_.error(), request)) add_up();
             return StepOutcome::advanced;
         }
@@ -249,6 +250,11 @@ class CubatureEstimator final : public Estimator {
 
     // No region is left to halve. The error of equal values falls with the number of points.
     StepOutcome end(const StepRequest& request) {
+        if (!verification_.recalled(regions_.count()) &&
+            verification_.recall(regions_, totals_.value(), totals_.error(), request)) {
+            add_up();
+            return StepOutcome::advanced;
+        }
         if (verification_.due(regions_, totals_.value(), totals_.error(), evaluations_, request, true))
             return verify(request);
         if (totals_.equal_values() && evaluations_ < most_equal_values && !reached(request) &&

@@ -40,6 +40,8 @@ class CubatureVerification {
                 const StepRequest& request);
     // Was this number of regions compared so?
     bool recalled(std::size_t regions) const;
+    // Are there twice as many regions as at the last recall? Without a target no claim calls for it.
+    bool outgrown(std::size_t regions) const { return regions >= 2 * recalled_regions_; }
     // Tolerances of open witnesses, which follow the value.
     void update(const CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
                 const StepRequest& request);

@@ -146,6 +146,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
                           "a peak at %s, seen but hardly sampled, may hold %.2g or more of the integral",
                           place(where->u).substr(5).c_str(), worst);
             tally.warnings.emplace_back(text.data());
+            least[c] = std::max(least[c], worst);
         }
         const double at_ends = c < look_.unresolved.size() ? look_.unresolved[c] : 0;
         const double unresolved = std::max(examined_[c].unresolved, at_ends);

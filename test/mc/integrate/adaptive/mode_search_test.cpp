@@ -90,6 +90,32 @@ TEST(FindModes, FindsANarrowPeakUnderAWideOne) {
     }));
 }
 
+// Hardly any point of the cube leads to it, but many around the wide mode do.
+TEST(FindModes, SurveysFindANarrowPeakBesideAWideOne) {
+    const auto f = [](const std::vector<double>& x) {
+        double of_wide = 0, of_narrow = 0;
+        for (double v : x) {
+            of_wide += (v - 0.45) * (v - 0.45);
+            of_narrow += (v - 0.52) * (v - 0.52);
+        }
+        return std::exp(-0.5 * of_wide / (0.015 * 0.015)) + 50 * std::exp(-0.5 * of_narrow / (0.006 * 0.006));
+    };
+    int without = 0, with = 0;
+    for (std::uint64_t seed = 1; seed <= 10; ++seed) {
+        const auto finds = [&](std::uint64_t survey) {
+            const Search s =
+                search(f, 4, 2048, {.max_evaluations = 12'000, .survey = survey, .seed = seed}, seed);
+            return std::ranges::any_of(s.modes, [](const Gaussian& g) {
+                return std::ranges::all_of(g.mean(), [](double m) { return std::abs(m - 0.52) < 1e-3; });
+            });
+        };
+        without += finds(0);
+        with += finds(2048);
+    }
+    EXPECT_LE(without, 4);
+    EXPECT_GE(with, 8);
+}
+
 TEST(FindModes, GaussianHasTheCurvatureOfACorrelatedPeak) {
     const std::vector<double> covariance{0.0025, 0.0015, 0.0015, 0.0016};
     const Gaussian truth({0.4, 0.6}, cholesky_factor(covariance, 2));

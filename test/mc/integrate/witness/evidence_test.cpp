@@ -160,5 +160,69 @@ TEST(Evidence, TheLimitOfEvaluationsHolds) {
         }
 }
 
+// Without a target nothing is claimed, but what was seen is looked into all the same, and more evaluations do not harm.
+TEST(Evidence, NumbersOfEvaluationsAloneMissNoPeakThatWasSeen) {
+    const auto peak = [](std::span<const double> x) {
+        double squares = 0;
+        for (double v : x) squares += v * v;
+        return std::exp(-squares);
+    };
+    for (int n : {1, 2})
+        for (const char* name : {"auto", "cubature", "adaptive"})
+            for (double evaluations : {1e4, 1e5, 1e6}) {
+                const Domain wide(std::vector<Range>(static_cast<std::size_t>(n), {-1e3, 1e3}));
+                const IntegrationResult r =
+                    integrate(peak, wide, Method::named(name),
+                              {.evaluations = static_cast<std::uint64_t>(evaluations)}, {.threads = 1});
+                const double exact = std::pow(1.7724538509055159, n);
+                EXPECT_LT(std::abs(r.value[0] - exact), std::min(0.05, 5 * r.standard_error[0] + 1e-9))
+                    << n << " " << name << " " << evaluations << ": " << to_string(r);
+            }
+}
+
+// The error of rules that converge is not given away for that of samples which do not.
+TEST(Evidence, MoreEvaluationsAreNotWorse) {
+    struct Case {
+        int dimensions;
+        double (*f)(std::span<const double>);
+        double exact;
+    };
+    const Case cases[] = {{1,
+                           [](std::span<const double> x) { return 1 / std::sqrt(std::abs(x[0] - 1. / 3)); },
+                           2 * (std::sqrt(1. / 3) + std::sqrt(2. / 3))},
+                          {2, [](std::span<const double> x) { return -std::log(x[0] * x[0] + x[1] * x[1]); },
+                           3 - std::log(2.) - 1.5707963267948966},
+                          {1, [](std::span<const double> x) { return std::pow(x[0], -0.9); }, 10}};
+    for (const Case& f : cases) {
+        double before = 0;
+        for (double evaluations : {1e4, 1e5, 1e6}) {
+            const IntegrationResult r =
+                integrate(f.f, Domain::unit_cube(f.dimensions), Method::named("auto"),
+                          {.evaluations = static_cast<std::uint64_t>(evaluations)}, {.threads = 1});
+            const double error = std::abs(r.value[0] / f.exact - 1);
+            if (before > 0) {
+                EXPECT_LT(error, 1.1 * before + 1e-12) << f.exact << " " << evaluations;
+            }
+            before = error;
+        }
+    }
+}
+
+// Values at which a pole is rounded to zero distance are huge; the scale of all others does not follow them.
+TEST(Evidence, SingleHugeValuesLeaveTheErrorsAsTheyAre) {
+    const auto f = [](std::span<const double> x) {
+        const double sum = x[0] + x[1] + x[2];
+        return std::pow(sum - std::floor(sum) + 1e-300, -0.85);
+    };
+    for (const char* name : {"basic", "quasi", "vegas", "adaptive"})
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+            const IntegrationResult r =
+                integrate(f, Domain::unit_cube(3), Method::named(name),
+                          {.relative_error = 1e-3, .evaluations = 60'000}, {.seed = seed, .threads = 1});
+            EXPECT_GT(r.standard_error[0], 0.02) << name << " " << seed << ": " << to_string(r);
+            EXPECT_LT(r.value[0], 20) << name << " " << seed;
+        }
+}
+
 } // namespace
 } // namespace montelux
