@@ -1,9 +1,21 @@
 #include "montelux/mc/integrate/witness/raw_values.h"
 
+#include <cmath>
 #include <cstddef>
 #include <utility>
 
+#include "montelux/mc/integrate/infinity.h"
+
 namespace montelux {
+namespace {
+
+// Values near the limit of IntegrandScale were larger: infinite, as far as a look can tell.
+double unlimited(double value) {
+    constexpr double far = 0x1p890;
+    return std::abs(value) > far ? std::copysign(infinity, value) : value;
+}
+
+} // namespace
 
 std::vector<std::vector<double>> RawValues::operator()(const std::vector<std::vector<double>>& points) {
     std::vector<std::vector<double>> rows(points.size());
@@ -20,7 +32,7 @@ std::vector<std::vector<double>> RawValues::operator()(const std::vector<std::ve
     for (std::size_t i = 0; i < points.size(); ++i)
         for (int c = 0; c < m; ++c) {
             const double value = std::as_const(f)(i, c);
-            rows[i].push_back(value == 0 ? 0 : value * volume[i]);
+            rows[i].push_back(value == 0 ? 0 : unlimited(value * volume[i]));
         }
     return rows;
 }
@@ -36,7 +48,7 @@ std::vector<std::vector<double>> RawValues::at(const std::vector<std::vector<dou
     evaluator_.integrand()(x, f);
     evaluations_ += points.size();
     for (std::size_t i = 0; i < points.size(); ++i)
-        for (int c = 0; c < m; ++c) rows[i].push_back(std::as_const(f)(i, c));
+        for (int c = 0; c < m; ++c) rows[i].push_back(unlimited(std::as_const(f)(i, c)));
     return rows;
 }
 

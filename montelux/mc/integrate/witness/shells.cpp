@@ -63,8 +63,8 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     double sum_outer = 0, sum_inner = 0, innermost = 0, before = 0;
     bool rounded = false;
     for (std::size_t i = 0; i < shells; ++i) {
-        if (std::isnan(g_outer[i]) || std::isnan(g_inner[i])) return false;
-        rounded = rounded || std::isinf(mass(g_inner[i], inner[i])) || g_inner[i] == 0;
+        if (std::isnan(g_outer[i])) return false;
+        rounded = rounded || !std::isfinite(mass(g_inner[i], inner[i])) || g_inner[i] == 0;
         sum_outer += mass(g_outer[i], outer[i]);
         sum_inner += mass(g_inner[i], inner[i]);
         if (i >= shells - shells / 3)
@@ -72,7 +72,7 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
         else if (i >= shells / 3)
             before += mass(g_inner[i], inner[i]);
     }
-    // Infinite or zero, by overflow or rounding or in truth: the shells up to there tell.
+    // Infinite, zero or no number, by overflow or rounding or in truth: the shells up to there tell.
     if (rounded)
         return may_be_rounded && masses_diverge_until(values, last_value(values, finest), codimension, false);
     // Within the inner range, too: the outer one may lie beyond all that is there.

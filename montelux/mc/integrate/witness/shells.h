@@ -24,7 +24,7 @@ using ShellValues = std::function<std::vector<double>(std::span<const double> ex
 // Mass of a shell at distance r = 2^-k is |g| r^codimension. Its sum over k converges if the masses fall faster
 // than 1 / k (Cauchy's condensation of the integral): compares their mean over the inner shells, up to `finest`,
 // with that over shells of half their exponents, where 1 / k gives a ratio of a half. True where they do not fall.
-// Where inner values are infinite or zero, by overflow or rounding, coarser shells decide.
+// Where inner values are infinite, zero or not numbers, by overflow or rounding, coarser shells decide.
 bool masses_diverge(const ShellValues& values, double finest, int codimension);
 
 } // namespace montelux

@@ -7,6 +7,8 @@
 namespace montelux {
 namespace {
 
+constexpr double slow = 0.51; // 1 / sqrt(r) among them, whose variance is infinite by a logarithm
+
 // Integral of an exponential that has these values at both ends of an interval.
 double between(double first, double last, double length) {
     if (!(first > 0) || !(last > 0)) return 0;
@@ -18,7 +20,7 @@ double between(double first, double last, double length) {
 
 bool fall_slowly(double outer_mass, double inner_mass, double exponents_between, int codimension) {
     return outer_mass > 0 && inner_mass > 0 && std::isfinite(outer_mass) && std::isfinite(inner_mass) &&
-           std::log2(outer_mass / inner_mass) < 0.5 * codimension * exponents_between;
+           std::log2(outer_mass / inner_mass) < slow * codimension * exponents_between;
 }
 
 double unreached(const SlowShells& slow, std::size_t c, std::span<const double> q, double points) {

@@ -107,8 +107,9 @@ TEST(Evidence, WithdrawsClaimsThatMissAPeak) {
 TEST(Evidence, DivergentIntegralsAreCalledSo) {
     const Budget budget{.relative_error = 1e-2, .evaluations = 1'000'000};
     const std::vector<double (*)(double)> poles{
-        [](double x) { return 1 / x; }, [](double x) { return std::pow(x, -1.5); },
-        [](double x) { return 1 / (1 - x); }, [](double x) { return 1 / ((x - 0.3) * (x - 0.3)); },
+        [](double x) { return 1 / x; },           [](double x) { return std::pow(x, -1.5); },
+        [](double x) { return std::pow(x, -3); }, [](double x) { return std::pow(x, -9); },
+        [](double x) { return 1 / (1 - x); },     [](double x) { return 1 / ((x - 0.3) * (x - 0.3)); },
         [](double x) { return 1 / (x - 0.61); }};
     for (std::size_t i = 0; i < poles.size(); ++i)
         for (const char* method : {"auto", "adaptive", "quasi"}) {

@@ -51,6 +51,10 @@ TEST(FirstLook, FindsPeaksOfAnyWidthAtZeroAtEndsAndAtLandmarks) {
 
 TEST(FirstLook, TellsDivergenceAtEndsAndAtInfinity) {
     EXPECT_EQ(look_at([](double x) { return 1 / x; }, Domain::interval(0, 1)).divergence, "x -> 0");
+    // Far out x^4 overflows, and its quotients are zero or no numbers.
+    EXPECT_EQ(look_at([](double x) { return x * x * x / (1 + x * x * x * x); }, Domain::interval(0, infinity))
+                  .divergence,
+              "x -> inf");
     EXPECT_EQ(look_at([](double x) { return 1 / (1 + x); }, Domain::interval(0, infinity)).divergence,
               "x -> inf");
     EXPECT_EQ(look_at([](double x) { return std::exp(x); }, Domain::interval(0, infinity)).divergence,
