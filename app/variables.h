@@ -16,7 +16,7 @@ namespace montelux::app {
 struct Variables {
     std::vector<std::string> names;
     std::vector<Range> ranges; // empty unless the domain is a box
-    // Importance densities; empty where none is given for any variable, else one a variable.
+    // Importance densities; empty where none is given for any variable, else one for each variable.
     std::vector<std::optional<Distribution>> densities;
 };
 

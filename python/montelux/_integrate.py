@@ -120,7 +120,7 @@ def integrate(
     f may be a C function, too: a numba cfunc, a scipy.LowLevelCallable, a function of ctypes with declared types;
     double (double), double (int, double *), and more of docs/python-integrands.md.
 
-    domain: a range (lower, upper); or a sequence of ranges, one a variable, where [(0, 1)] gives x of shape (n, 1);
+    domain: a range (lower, upper); or a sequence of ranges, one for each variable, where [(0, 1)] gives x of shape (n, 1);
     or a Domain, where one coordinate gives x of shape (n,). Ends may be infinite.
 
     method: a name ('auto', 'vegas', ...) with its settings as further keyword arguments, or an object such as

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -40,9 +41,15 @@ struct StepRequest {
     // Targets of the step; 0 where there is none.
     double relative_error = 0, absolute_error = 0;
     const CancelFlag* cancel = nullptr;
+    // The integrand throws IntegrandInterrupted from here on; what works long without it asks.
+    std::chrono::steady_clock::time_point deadline = std::chrono::steady_clock::time_point::max();
     // Sizes that the relative error refers to where they exceed the values: one per component, or none.
     std::span<const double> sizes = {};
 
+    bool over() const {
+        return (cancel && cancel->requested()) || (deadline != std::chrono::steady_clock::time_point::max() &&
+                                                   std::chrono::steady_clock::now() >= deadline);
+    }
     bool targeted() const { return relative_error > 0 || absolute_error > 0; }
     // Size of a component of this value that the relative error refers to.
     double size(std::size_t component, double value) const {

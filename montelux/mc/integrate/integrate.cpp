@@ -281,10 +281,11 @@ class Run {
     }
 
     // A step that is interrupted at a point in time. `shortened`: more evaluations were allowed than time.
-    std::optional<StopReason> timed(const StepRequest& request, Clock::time_point until, bool shortened) {
+    std::optional<StopReason> timed(StepRequest request, Clock::time_point until, bool shortened) {
         const std::uint64_t before = estimator_->tally().evaluations;
         const Clock::time_point begin = Clock::now();
         interruption_.set_deadline(until);
+        request.deadline = until;
         const StepOutcome outcome = attempt(request);
         interruption_.clear_deadline();
         const double seconds = std::chrono::duration<double>(Clock::now() - begin).count();
@@ -409,7 +410,7 @@ class Run {
         const StopReason stop = ended.value_or(StopReason::finished);
         Tally tally = ended ? judged(estimator_->tally()) : estimator_->tally();
         const bool unchecked = targeted_ && !tally.statistical && !tally.ready && tally.warnings.empty();
-        const bool only_zeros = nothing_found(tally);
+        const bool only_zeros = nothing_found(estimator_->tally()); // before it was judged
         const bool rounding = (tally.at_limit && tally.warnings.empty()) || is_rounding(tally);
         const std::vector<double> values = tally.value, errors = tally.standard_error; // scaled
         IntegrationResult r;
@@ -447,7 +448,7 @@ class Run {
             // Zeros give no scale for what was missed.
             const std::size_t m = r.value.size();
             for (std::size_t c = 0; c < m; ++c) {
-                if (r.value[c] != 0 || r.standard_error[c] != 0) continue;
+                if (r.value[c] != 0) continue;
                 r.standard_error[c] = std::numeric_limits<double>::infinity();
                 if (!r.covariance.empty()) r.covariance[c * m + c] = r.standard_error[c];
             }

@@ -44,7 +44,7 @@ constexpr double trusted_exploration = 0.05; // the same, above which the error 
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
 constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to converge
 // Points of an indicator that tell its error, and evaluations within which uniform points are expected to reach a target.
-constexpr std::uint64_t enough_hits = 64;
+constexpr std::uint64_t enough_hits = 16;
 constexpr double reach_of_indicators = 1 << 20;
 // Uniform points behind a claim in several variables: all of them miss a region of 1/5000 of the cube in 4 %
 // of cases.
@@ -69,7 +69,8 @@ class AdaptiveEstimator final : public Estimator {
                                             std::lround(settings.uniform_share * MixtureDensity::units)))),
           cube_(problem.evaluator.dimensions()),
           round_points_(std::max<std::uint64_t>(1, explored_ / 256) * training_points),
-          uniform_(settings.replicates, problem.evaluator.components()), weighted_(uniform_) {
+          uniform_(settings.replicates, problem.evaluator.components()), weighted_(uniform_),
+          kept_(uniform_) {
         // Now, not within a step whose time is measured.
         if (device_) device_->sampler().prepare_mixtures();
     }
@@ -93,8 +94,8 @@ class AdaptiveEstimator final : public Estimator {
     }
 
     Tally tally() const override {
-        const bool weighted = phase_ == Phase::weighted && weighted_.points() > 0;
-        const MixtureEstimate& estimate = weighted ? weighted_ : uniform_;
+        const MixtureEstimate& estimate = best();
+        const bool weighted = &estimate == &weighted_, earlier = &estimate == &kept_;
         Tally tally;
         estimate.tally(problem_.full_covariance, tally);
         tally.evaluations = evaluations();
@@ -102,7 +103,8 @@ class AdaptiveEstimator final : public Estimator {
         tally.non_finite.merge(uniform_.sums().non_finite);
         tally.non_finite.merge(weighted_.sums().non_finite);
         tally.non_finite.merge(abandoned_non_finite_);
-        tally.ready = !has_new_peaks() && estimate.compared() && (phase_ == Phase::uniform || weighted) &&
+        tally.ready = !has_new_peaks() && !earlier && estimate.compared() &&
+                      (phase_ == Phase::uniform || weighted) &&
                       (weighted || !plateau() || uniform_.evaluations() >= plateau_evaluations) &&
                       (!weighted || check_.covers(trainer_, weighted_.points()));
         if (estimate.points() == 0) return tally;
@@ -114,8 +116,8 @@ class AdaptiveEstimator final : public Estimator {
                 ++tally.degrees_of_freedom;
             }
         // The largest of uniform points may have a large weight without being a surprise.
-        const bool heavy = weighted && estimate.heavy_tailed(tally.standard_error[0]);
-        const bool lost = weighted && estimate.lost_what_is_in(uniform_);
+        const bool heavy = (weighted || earlier) && estimate.heavy_tailed(tally.standard_error[0]);
+        const bool lost = (weighted || earlier) && estimate.lost_what_is_in(uniform_);
         std::vector<std::string> tail;
         estimate.warn_of_tail(tally.standard_error[0], tail);
         const bool unseen = weighted && check_.unseen() > 0;
@@ -143,6 +145,7 @@ class AdaptiveEstimator final : public Estimator {
         trainer_.save(state);
         uniform_.save(state);
         weighted_.save(state);
+        kept_.save(state);
     }
     void load(StateReader& state) override {
         phase_ = static_cast<Phase>(std::clamp(state.get<int>(), 0, static_cast<int>(Phase::uniform)));
@@ -158,6 +161,7 @@ class AdaptiveEstimator final : public Estimator {
         trainer_.load(state);
         uniform_.load(state);
         weighted_.load(state);
+        kept_.load(state);
     }
 
   private:
@@ -166,6 +170,13 @@ class AdaptiveEstimator final : public Estimator {
     std::uint64_t evaluations() const {
         return uniform_.evaluations() + weighted_.evaluations() + trainer_.evaluations() +
                abandoned_evaluations_;
+    }
+    // Chosen by numbers of points alone, so that the choice does not bias it.
+    const MixtureEstimate& best() const {
+        if (phase_ == Phase::explore || phase_ == Phase::uniform) return uniform_;
+        if (phase_ == Phase::weighted && weighted_.points() > 0 && weighted_.points() >= kept_.points())
+            return weighted_;
+        return kept_.points() > 0 ? kept_ : uniform_;
     }
     std::uint64_t replicates() const { return static_cast<std::uint64_t>(settings_.replicates); }
 
@@ -209,9 +220,14 @@ class AdaptiveEstimator final : public Estimator {
             phase_ = trainer_.nonzero() == 0 ? Phase::uniform : first_training();
         return StepOutcome::advanced;
     }
+    bool is_hit_indicator() const {
+        return trainer_.flat_where_nonzero() && trainer_.nonzero() >= enough_hits;
+    }
     // Was a peak seen that points of this density do not explain?
     bool misses_a_peak(const MixtureDensity& density, const MixtureEstimate& estimate) const {
         if (!problem_.look || problem_.look->peaks.empty() || estimate.points() == 0) return false;
+        // Hits of an indicator tell of all of it.
+        if (density.gaussians().empty() && is_hit_indicator()) return false;
         Tally tally;
         estimate.tally(false, tally);
         PointBuffer at(1, density.dimensions());
@@ -244,8 +260,7 @@ class AdaptiveEstimator final : public Estimator {
     bool uniform_will_do(const StepRequest& request) const {
         if (!request.targeted()) return false;
         // A trained density cannot follow the jumps of an indicator, and costs far more time per point.
-        if (trainer_.flat_where_nonzero() && trainer_.nonzero() >= enough_hits)
-            return uniform_.expected_rest(request) <= reach_of_indicators;
+        if (is_hit_indicator()) return retrained_ > 0 || uniform_.expected_rest(request) <= reach_of_indicators;
         if (trainer_.effective_share() < trusted_exploration) return false;
         const bool even = trainer_.effective_share() > flat;
         const double expected =
@@ -263,7 +278,7 @@ class AdaptiveEstimator final : public Estimator {
         known_peaks_ = problem_.look->peaks.size();
         if (phase_ == Phase::weighted ? misses_a_peak(trainer_.density(), weighted_)
                                       : misses_a_peak(cube_, uniform_)) {
-            retrain(2 * static_cast<double>(trainer_.evaluations()));
+            retrain(2 * static_cast<double>(trainer_.evaluations()), false);
             phase_ = Phase::search;
         }
         return StepOutcome::advanced;
@@ -282,7 +297,7 @@ class AdaptiveEstimator final : public Estimator {
 
     StepOutcome train(const StepRequest& request) {
         if (request.max_evaluations < 2 * round_points_) return stop_training(request);
-        if (!trainer_.round(round_points_, request.cancel)) return StepOutcome::cancelled;
+        if (!trainer_.round(round_points_, request)) return StepOutcome::cancelled;
         const double variance = trainer_.relative_variance();
         const bool stuck =
             trainer_.rounds() > 3 && variance != previous_variance_ && variance > 0.9 * previous_variance_;
@@ -354,17 +369,28 @@ class AdaptiveEstimator final : public Estimator {
         const std::uint64_t trained = trainer_.evaluations();
         const bool again = retrained_ < max_retrainings && 4 * trained < request.max_evaluations;
         if (!check_.run(trainer_, weighted_, request, again)) return StepOutcome::exhausted;
-        if (check_.unseen() > 0 && again) retrain(2 * static_cast<double>(trained));
+        if (check_.unseen() > 0 && again) {
+            retrain(2 * static_cast<double>(trained), false);
+            if (uniform_will_do(request)) {
+                uniform_.compare_anew();
+                phase_ = Phase::uniform;
+            }
+        }
         return StepOutcome::advanced;
     }
 
-    // Discards the weighted samples: an estimate that kept them, with a density chosen by looking at them,
-    // would be biased.
-    void retrain(double goal) {
+    // The weighted samples end here: an estimate that went on with a density chosen by looking at them would be biased.
+    // They stay a result of their own until the next density has had as many, if they missed nothing.
+    void retrain(double goal, bool keeps) {
         ++retrained_;
         abandoned_evaluations_ += weighted_.evaluations();
         abandoned_non_finite_.merge(weighted_.sums().non_finite);
-        weighted_ = MixtureEstimate(settings_.replicates, problem_.evaluator.components());
+        const MixtureEstimate none(settings_.replicates, problem_.evaluator.components());
+        if (!keeps)
+            kept_ = none;
+        else if (weighted_.points() >= kept_.points())
+            kept_ = std::move(weighted_);
+        weighted_ = none;
         check_ = {};
         training_goal_ = goal;
         phase_ = Phase::train;
@@ -396,7 +422,7 @@ class AdaptiveEstimator final : public Estimator {
         const bool surprised = ratio <= surprise_matters && weighted_.has_surprising_weights() &&
                                4 * trained < static_cast<double>(request.max_evaluations);
         if (!far && !surprised) return;
-        retrain(surprised ? 2 * trained : settings_.training_share * left);
+        retrain(surprised ? 2 * trained : settings_.training_share * left, !surprised);
     }
 
     void add_warnings(const MixtureEstimate& estimate, bool heavy, bool lost, Tally& tally) const {
@@ -464,6 +490,7 @@ class AdaptiveEstimator final : public Estimator {
     std::uint64_t abandoned_evaluations_ = 0;
     NonFiniteCount abandoned_non_finite_;
     MixtureEstimate uniform_, weighted_;
+    MixtureEstimate kept_; // of the density before; without points: none
 };
 
 } // namespace

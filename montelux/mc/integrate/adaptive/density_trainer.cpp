@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "montelux/mc/integrate/adaptive/difference_walk.h"
@@ -108,7 +109,7 @@ void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless, st
     density_.set_shares(std::move(shares));
 }
 
-bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
+bool DensityTrainer::round(std::uint64_t n, const StepRequest& request) {
     // After a search for peaks, the density is tried before it is fitted. While weights are uneven, every
     // second round draws from wider Gaussians, which see the ends of ridges.
     const bool wide =
@@ -118,7 +119,7 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
     n = std::max<std::uint64_t>(1, n / balanced) * balanced;
     SamplePoints points;
     const auto sums = sample_mixture(problem_.evaluator, drawn, hash_key(problem_.seed, 1, rounds_), 1, 0, n,
-                                     &points, cancel);
+                                     &points, request.cancel);
     if (!sums) return false;
     const double mean = sums->sums.sum(0, 0) / static_cast<double>(n),
                  variance = sums->independent_variance(n);
@@ -145,6 +146,8 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
     if (!useless && lacking(rounds_ + 1, relative_variance) && !density_.gaussians().empty())
         walked = walk(walked_, drawn_round, n / 4, most_walked, 1);
 
+    const auto before = std::tuple(rounds_, evaluations_, non_finite_, checks_, relative_variance_, density_,
+                                   recent_, walked_, walks_, enriched_);
     // Nothing is changed before this line, so an exception of the integrand changes nothing.
     ++rounds_;
     evaluations_ += sums->evaluations + walked.evaluations;
@@ -163,8 +166,10 @@ bool DensityTrainer::round(std::uint64_t n, const CancelFlag* cancel) {
         walked_ = std::move(walked.points);
         ++walks_;
     }
-    fit();
-    return true;
+    if (fit([&] { return request.over(); })) return true;
+    std::tie(rounds_, evaluations_, non_finite_, checks_, relative_variance_, density_, recent_, walked_,
+             walks_, enriched_) = before;
+    return false;
 }
 
 bool DensityTrainer::lacking(int rounds, double relative_variance) const {
@@ -285,13 +290,13 @@ DensityTrainer::Pool DensityTrainer::pool() const {
     return pool;
 }
 
-void DensityTrainer::fit() {
+bool DensityTrainer::fit(const std::function<bool()>& stop) {
     const int dimensions = density_.dimensions();
     const Round& last = recent_.back();
     // The maps follow only the last round, whose weights are the most even.
     std::vector<double> weights(last.h.size());
     for (std::size_t i = 0; i < weights.size(); ++i) weights[i] = last.h[i] / last.p[i];
-    if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) return;
+    if (!(std::accumulate(weights.begin(), weights.end(), 0.0) > 0)) return true;
     MapFit settings;
     settings.bins = std::clamp(static_cast<int>(std::sqrt(static_cast<double>(last.h.size())) / 3), 8, 48);
     std::vector<MonotoneMap> maps(static_cast<std::size_t>(dimensions));
@@ -317,7 +322,7 @@ void DensityTrainer::fit() {
         enriched_ = true;
         gaussians = gaussians.empty() ? scattered_gaussians(all.x, weights) : split_gaussians(gaussians);
     }
-    if (!gaussians.empty()) fit_gaussians(gaussians, all.x, weights, em_steps);
+    if (!gaussians.empty() && !fit_gaussians(gaussians, all.x, weights, em_steps, stop)) return false;
     for (Gaussian& g : gaussians) g = g.widened(safe_width); // heavier tails cost little, missing tails much
     MixtureDensity density_before = std::move(density_);
     density_ = MixtureDensity(dimensions, maps, gaussians, boundary);
@@ -367,6 +372,7 @@ void DensityTrainer::fit() {
         }
     }
     remember(all, ratios);
+    return true;
 }
 
 void DensityTrainer::remember(const Pool& all, std::span<const double> ratios) {

@@ -38,7 +38,7 @@ class DensityTrainer {
     std::uint64_t search_evaluations() const { return search_evaluations_; } // of all searches
     // One round of n points, about (a multiple of what the density divides exactly). False when cancelled:
     // nothing changed.
-    bool round(std::uint64_t n, const CancelFlag* cancel);
+    bool round(std::uint64_t n, const StepRequest& request);
     // Walks under |g| from points of the last round, and returns the share of the integral that lies where n
     // points of the density are expected to hit too rarely for their spread to tell. The next fit sees the
     // walked points.
@@ -93,7 +93,8 @@ class DensityTrainer {
     // Continues a walk, or starts at points of the round just drawn.
     Walk walk(const WalkedPoints& before, const Round& last, std::uint64_t max_evaluations,
               std::size_t longest, double exponent) const;
-    void fit();
+    // False where `stop` said so, before anything changed.
+    bool fit(const std::function<bool()>& stop);
     Pool pool() const;
     void remember(const Pool& all, std::span<const double> ratios);
 

@@ -145,9 +145,9 @@ Eigensystem symmetric_eigensystem(std::vector<double> a, int n) {
     return result;
 }
 
-void fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::span<const double> weights,
-                   int steps) {
-    if (components.empty()) return;
+bool fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::span<const double> weights,
+                   int steps, const std::function<bool()>& stop) {
+    if (components.empty()) return true;
     const auto n = static_cast<std::size_t>(x.dimensions());
     double total = 0;
     for (double w : weights) total += w;
@@ -182,6 +182,7 @@ void fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::
     std::vector<double> shares(components.size(), 1.0 / static_cast<double>(components.size()));
     std::vector<std::vector<double>> part(components.size(), std::vector<double>(used.size()));
     for (int step = 0; step < steps; ++step) {
+        if (stop && stop()) return false;
         for (std::size_t k = 0; k < components.size(); ++k) {
             components[k].pdf(points, part[k]);
             for (double& p : part[k]) p *= shares[k];
@@ -221,6 +222,7 @@ void fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::
     }
     for (std::size_t k = components.size(); k-- > 0;)
         if (shares[k] < 1e-4) components.erase(components.begin() + static_cast<std::ptrdiff_t>(k));
+    return true;
 }
 
 } // namespace montelux

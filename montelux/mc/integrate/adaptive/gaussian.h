@@ -1,6 +1,7 @@
 // Normal densities in several variables, and their fit to weighted points.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -51,8 +52,9 @@ Eigensystem symmetric_eigensystem(std::vector<double> matrix, int n);
 
 // Improves the components of a mixture of Gaussians by steps of expectation-maximisation on weighted points
 // (Dempster, Laird, Rubin 1977; weighted as in population Monte Carlo, Cappe et al. 2008). Components that
-// explain almost nothing are dropped; those with too few points for their covariance stay as they are.
-void fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::span<const double> weights,
-                   int steps);
+// explain almost nothing are dropped; those with too few points for their covariance stay as they are. Returns false where
+// `stop`, asked before each step, said so.
+bool fit_gaussians(std::vector<Gaussian>& components, const PointBatch& x, std::span<const double> weights,
+                   int steps, const std::function<bool()>& stop = {});
 
 } // namespace montelux

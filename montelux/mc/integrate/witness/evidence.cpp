@@ -89,9 +89,19 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             look_.peaks.push_back(std::move(peak));
             const PoleReport pole = search_pole(raw, witness, c);
             known = {pole.u, value, pole.unresolved};
-            if (pole.diverges && divergence_.empty()) divergence_ = place(pole.u);
+            if (pole.diverges && !near_infinity(pole.u) && divergence_.empty()) divergence_ = place(pole.u);
             evaluations_ += raw.evaluations();
         }
+}
+
+// Ridges that lead out to infinity look like poles in the variables of the cube; the first look asks whether tails converge.
+bool Evidence::near_infinity(std::span<const double> u) const {
+    constexpr double near = 1e-4;
+    const std::span<const Range> ranges = evaluator_.domain().ranges();
+    for (std::size_t d = 0; d < ranges.size(); ++d)
+        if ((std::isinf(ranges[d].lower) && u[d] < near) || (std::isinf(ranges[d].upper) && 1 - u[d] < near))
+            return true;
+    return false;
 }
 
 std::string Evidence::place(std::span<const double> at) const {

@@ -81,9 +81,9 @@ TEST(DensityTrainer, PeaksThatSeeLessThanTheExplorationAreGivenUp) {
     ASSERT_GE(trainer.nonzero(), 16u);
     trainer.find_peaks(5000);
     ASSERT_FALSE(trainer.density().gaussians().empty());
-    ASSERT_TRUE(trainer.round(1024, nullptr));
+    ASSERT_TRUE(trainer.round(1024, {}));
     EXPECT_TRUE(trainer.density().gaussians().empty());
-    for (int i = 0; i < 6; ++i) ASSERT_TRUE(trainer.round(2048, nullptr));
+    for (int i = 0; i < 6; ++i) ASSERT_TRUE(trainer.round(2048, {}));
     EXPECT_LT(trainer.relative_variance(), 1);
 }
 
@@ -97,9 +97,9 @@ TEST(DensityTrainer, RoundsMakeTheWeightsEven) {
     DensityTrainer trainer(watched.problem(), 4);
     explore(trainer, watched);
     const std::uint64_t before = watched.evaluations;
-    ASSERT_TRUE(trainer.round(4096, nullptr));
+    ASSERT_TRUE(trainer.round(4096, {}));
     const double uniform = trainer.relative_variance();
-    for (int i = 0; i < 9; ++i) ASSERT_TRUE(trainer.round(4096, nullptr));
+    for (int i = 0; i < 9; ++i) ASSERT_TRUE(trainer.round(4096, {}));
     EXPECT_EQ(trainer.rounds(), 10);
     EXPECT_GT(uniform, 2);
     EXPECT_LT(trainer.relative_variance(), 0.25 * uniform);
@@ -129,7 +129,7 @@ TEST(DensityTrainer, ComponentsOfVeryDifferentSizeCountAlike) {
                           2);
     DensityTrainer trainer(watched.problem(), 4);
     explore(trainer, watched);
-    for (int i = 0; i < 4; ++i) ASSERT_TRUE(trainer.round(4096, nullptr));
+    for (int i = 0; i < 4; ++i) ASSERT_TRUE(trainer.round(4096, {}));
     EXPECT_NEAR(pdf_at(trainer.density(), 0.25) / pdf_at(trainer.density(), 0.75), 1, 0.4);
     EXPECT_GT(pdf_at(trainer.density(), 0.25), 3 * pdf_at(trainer.density(), 0.5));
 }
@@ -145,7 +145,7 @@ TEST(DensityTrainer, PeaksBecomeGaussians) {
     EXPECT_EQ(trainer.density().gaussians().size(), 2u);
     EXPECT_GT(pdf_at(trainer.density(), 0.3), 1e3);
     EXPECT_GT(pdf_at(trainer.density(), 0.7), 1e3);
-    ASSERT_TRUE(trainer.round(4096, nullptr));
+    ASSERT_TRUE(trainer.round(4096, {}));
     EXPECT_LT(trainer.relative_variance(), 2);
 }
 
@@ -168,7 +168,7 @@ TEST(DensityTrainer, WalkersTellWhatIsHardlySampled) {
     EXPECT_EQ(trainer.evaluations() - counted, 8192u);
     // So many points hit every part of the ring.
     EXPECT_LT(trainer.unseen_share(1e8, 8192).value(), 1e-3);
-    for (int i = 0; i < 8; ++i) ASSERT_TRUE(trainer.round(4096, nullptr));
+    for (int i = 0; i < 8; ++i) ASSERT_TRUE(trainer.round(4096, {}));
     EXPECT_LT(trainer.unseen_share(3000, 8192).value(), 3e-3);
     // A walk that cannot be afforded gives no answer.
     const std::uint64_t after = watched.evaluations;
@@ -180,14 +180,14 @@ TEST(DensityTrainer, CancelledOrInterruptedStepsChangeNothing) {
     Watched watched([](std::span<const double> x) { return peak(x, 0.4, 50); }, 3);
     DensityTrainer trainer(watched.problem(), 4);
     explore(trainer, watched);
-    ASSERT_TRUE(trainer.round(2048, nullptr));
+    ASSERT_TRUE(trainer.round(2048, {}));
     const std::vector<std::uint64_t> before = words_of(trainer);
     CancelFlag cancel;
     cancel.request();
-    EXPECT_FALSE(trainer.round(2048, &cancel));
+    EXPECT_FALSE(trainer.round(2048, {.cancel = &cancel}));
     EXPECT_EQ(words_of(trainer), before);
     watched.stop = true;
-    EXPECT_THROW(trainer.round(2048, nullptr), Stopped);
+    EXPECT_THROW(trainer.round(2048, {}), Stopped);
     EXPECT_EQ(words_of(trainer), before);
     EXPECT_THROW(trainer.find_peaks(2000), Stopped);
     EXPECT_EQ(words_of(trainer), before);
@@ -210,7 +210,7 @@ TEST(DensityTrainer, LoadedOneResumesWithTheSameBits) {
             trainer.find_peaks(2000);
             loaded.find_peaks(2000);
         } else {
-            ASSERT_TRUE(trainer.round(2048, nullptr));
+            ASSERT_TRUE(trainer.round(2048, {}));
             ASSERT_TRUE(loaded.round(2048, nullptr));
         }
         EXPECT_EQ(words_of(loaded), words_of(trainer)) << "round " << i;
