@@ -70,7 +70,7 @@ TEST(DensityCheck, WarnsOfWhatIsHardlySampledUntilTheDensityIsFitted) {
     loaded.save(again);
     EXPECT_TRUE(std::ranges::equal(state.words(), again.words()));
 
-    for (int i = 0; i < 8; ++i) ASSERT_TRUE(ring.trainer.round(4096, nullptr));
+    for (int i = 0; i < 8; ++i) ASSERT_TRUE(ring.trainer.round(4096, {}));
     ring.estimate = MixtureEstimate(16, 1);
     ring.sample(512);
     ASSERT_TRUE(check.run(ring.trainer, ring.estimate, walks, true));

@@ -211,7 +211,7 @@ TEST(DensityTrainer, LoadedOneResumesWithTheSameBits) {
             loaded.find_peaks(2000);
         } else {
             ASSERT_TRUE(trainer.round(2048, {}));
-            ASSERT_TRUE(loaded.round(2048, nullptr));
+            ASSERT_TRUE(loaded.round(2048, {}));
         }
         EXPECT_EQ(words_of(loaded), words_of(trainer)) << "round " << i;
     }
