@@ -88,7 +88,7 @@ ends 0
 same attacked.exr unseen.exr
 
 # tev: all pixels arrive, closed and created first.
-port=$((20000 + $$ % 20000))
+port=$((20000 + $$ % 12000))
 timeout 60 python3 "$client" tev $port >tev.out 2>&1 &
 tev=$!
 for _ in $(seq 100); do grep -q listening tev.out && break || sleep 0.05; done
