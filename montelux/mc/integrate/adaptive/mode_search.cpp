@@ -21,7 +21,9 @@ constexpr std::size_t whole_curvature =
     6; // variables up to which a step takes the whole matrix of curvatures
 constexpr std::array survey_scales{3.0, 6.0, 12.0, 24.0}; // standard deviations around a mode
 constexpr std::size_t surveyed_modes = 2;
-constexpr double least_coordinate = 1e-12; // distance from the faces
+// Distance that climbing keeps from the faces: differences must show curvatures there. Tops whose widths are known may lie
+// closer.
+constexpr double least_coordinate = 1e-6, closest_coordinate = 1e-12;
 
 class Climber {
   public:
@@ -49,7 +51,7 @@ class Climber {
 
     // Moves x uphill, by Newton steps with a backtracking line search; returns log h there. `width`: of
     // the first differences.
-    double climb(std::vector<double>& x, double width = first_difference) {
+    double climb(std::vector<double>& x, double width = first_difference, double least = least_coordinate) {
         double top = log_at({x})[0];
         const double least_width = std::min(least_difference, 1e-3 * width);
         constexpr std::array lengths{1.0, 0.4, 0.16, 0.064, 0.026, 0.01};
@@ -77,8 +79,7 @@ class Climber {
             for (double length : lengths) {
                 tries.push_back(x);
                 for (std::size_t d = 0; d < n_; ++d)
-                    tries.back()[d] =
-                        std::clamp(x[d] + length * direction[d], least_coordinate, 1 - least_coordinate);
+                    tries.back()[d] = std::clamp(x[d] + length * direction[d], least, 1 - least);
             }
             const double before = top;
             for (auto& point : tries) { // one at a time: the first is nearly always the best
@@ -307,7 +308,7 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
     };
     for (const Witness& peak : settings.peaks) {
         std::vector<double> at = peak.u;
-        const double top = climber.climb(at, *std::ranges::min_element(peak.extent));
+        const double top = climber.climb(at, *std::ranges::min_element(peak.extent), closest_coordinate);
         if (top == nowhere || is_known(at)) continue;
         std::optional<Gaussian> mode = climber.laplace(at, top, settings.widest, peak.extent);
         // A cusp or a corner has no curvature: as wide as it is at half its height.
