@@ -252,19 +252,16 @@ void declare(CLI::App& c, IntegrateOptions& o) {
     text("--absolute-error", o.absolute_error, "Stop at this standard error; with both, at the larger one",
          "E");
     text("--norm", o.norm,
-         "What the relative error of several formulas refers to: the value of each component, or vector, the "
-         "norm "
-         "of all. Default: component",
+         "What the relative error of several formulas refers to: the value of each component, or vector, "
+         "the norm of all. Default: component",
          "NAME");
     text("--evaluations", o.evaluations,
-         "Maximum number of evaluations, for example 50000, 50k, 1M or 1e6. Default: 1e6 without an error or "
-         "a "
-         "time",
+         "Maximum number of evaluations, for example 50000, 50k, 1M or 1e6. Default: 1e6 without an error "
+         "or a time",
          "N");
     text("--time", o.time,
          "Stop after this time, for example 90, 90s, 10m or 1h30m. Default with an error and without "
-         "evaluations: 60 s, "
-         "or 1e9 evaluations",
+         "evaluations: 60 s, or 1e9 evaluations",
          "TIME");
     text("--seed", o.seed, "Seed of all random numbers. Default: 0", "N");
     text("--threads", o.threads, "Threads; 0: one per processor. The result does not depend on it", "N");

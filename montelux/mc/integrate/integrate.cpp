@@ -35,9 +35,9 @@ constexpr std::uint64_t share_of_look = 16;   // and one over the largest share 
 constexpr std::uint64_t least_for_look = 512; // smaller limits leave no room for one
 // Evaluations after which the largest values are examined, and the factor of them until the next time.
 constexpr std::uint64_t first_examination = 8192, next_examination = 8;
-constexpr double far_scale = 400,
-                 near_scale = 200; // exponents of values: of spikes, and of those that need no scale
-constexpr double zero_within = 3;  // errors within which a value counts as zero
+// Exponents of values: of spikes, and of those that need no scale.
+constexpr double far_scale = 400, near_scale = 200;
+constexpr double zero_within = 3; // errors within which a value counts as zero
 // Costs assumed until the first step is timed, in seconds: of the first calls of the integrand, and of the method's own
 // work per evaluation.
 constexpr double first_calls = 1e-4, work_per_evaluation = 3e-7;
@@ -410,7 +410,8 @@ class Run {
         const StopReason stop = ended.value_or(StopReason::finished);
         Tally tally = ended ? judged(estimator_->tally()) : estimator_->tally();
         const bool unchecked = targeted_ && !tally.statistical && !tally.ready && tally.warnings.empty();
-        const bool only_zeros = nothing_found(estimator_->tally()); // before it was judged
+        const Tally before = estimator_->tally(); // it was judged
+        const bool only_zeros = nothing_found(before);
         const bool rounding = (tally.at_limit && tally.warnings.empty()) || is_rounding(tally);
         const std::vector<double> values = tally.value, errors = tally.standard_error; // scaled
         IntegrationResult r;
@@ -448,7 +449,7 @@ class Run {
             // Zeros give no scale for what was missed.
             const std::size_t m = r.value.size();
             for (std::size_t c = 0; c < m; ++c) {
-                if (r.value[c] != 0) continue;
+                if (before.value[c] != 0 || before.standard_error[c] != 0) continue;
                 r.standard_error[c] = std::numeric_limits<double>::infinity();
                 if (!r.covariance.empty()) r.covariance[c * m + c] = r.standard_error[c];
             }

@@ -36,13 +36,13 @@ constexpr std::uint64_t enough_nonzero = 16;        // non-zero points needed be
 constexpr std::uint64_t few_nonzero = 4;            // the same, where a quarter of all has been explored,
 constexpr std::uint64_t most_exploration = 1 << 20; // or evaluations without
 constexpr double peaky = 0.1; // effective share of exploring points below which peaks are searched for
-// Evaluations around narrow peaks, times the squared number of variables; where there are more variables, too few of
-// any number of points come upon another peak.
-constexpr std::uint64_t survey_points = 128, most_surveyed = 6;
 constexpr double narrow_peaks = 0.01;        // the same, where the search is thorough
 constexpr double trusted_exploration = 0.05; // the same, above which the error of uniform points is believed
 constexpr double flat = 0.6; // the same, of integrands that uniform points are likely to be best for
 constexpr double uniform_reach = 32768; // evaluations within which uniform points may be expected to converge
+// Evaluations of a survey around narrow peaks, per squared number of variables; and the most variables in which points
+// there still find another peak.
+constexpr std::uint64_t survey_points = 128, most_surveyed = 6;
 // Points of an indicator that tell its error, and evaluations within which uniform points are expected to reach a target.
 constexpr std::uint64_t enough_hits = 16;
 constexpr double reach_of_indicators = 1 << 20;
@@ -260,7 +260,8 @@ class AdaptiveEstimator final : public Estimator {
     bool uniform_will_do(const StepRequest& request) const {
         if (!request.targeted()) return false;
         // A trained density cannot follow the jumps of an indicator, and costs far more time per point.
-        if (is_hit_indicator()) return retrained_ > 0 || uniform_.expected_rest(request) <= reach_of_indicators;
+        if (is_hit_indicator())
+            return retrained_ > 0 || uniform_.expected_rest(request) <= reach_of_indicators;
         if (trainer_.effective_share() < trusted_exploration) return false;
         const bool even = trainer_.effective_share() > flat;
         const double expected =

@@ -17,8 +17,8 @@ constexpr double least_excess = 3; // of log h above what known modes explain, f
 constexpr double first_difference = 0.02, close_difference = 5e-4,
                  least_difference = 1e-8; // of coordinates, in widths of the cube
 constexpr double longest_step = 0.3;      // of a coordinate
-constexpr std::size_t whole_curvature =
-    6; // variables up to which a step takes the whole matrix of curvatures
+// Variables up to which a step takes the whole matrix of curvatures.
+constexpr std::size_t whole_curvature = 6;
 constexpr std::array survey_scales{3.0, 6.0, 12.0, 24.0}; // standard deviations around a mode
 constexpr std::size_t surveyed_modes = 2;
 // Distance that climbing keeps from the faces: differences must show curvatures there. Tops whose widths are known may lie
