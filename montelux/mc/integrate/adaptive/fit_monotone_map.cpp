@@ -86,6 +86,17 @@ class Splitter {
             if (leaf.first + kept + 1 >= k) return;
             at = profile_.x[k - 1 - kept];
         }
+        // At a jump the true place lies up to a few points of the denser side farther out; beyond an edge that is drawn too
+        // near, points would be rare and heavy.
+        const double left_height = left / (at - leaf.lower), right_height = right / (leaf.upper - at);
+        if (!no_left && !no_right) {
+            const std::size_t near = std::min(nearby, least_);
+            const double spacings = margin / static_cast<double>(near);
+            if (left_height > MonotoneMap::jump_ratio * right_height)
+                at = std::max(at, profile_.x[k - 1] + spacings * (profile_.x[k - 1] - profile_.x[k - near]));
+            if (right_height > MonotoneMap::jump_ratio * left_height)
+                at = std::min(at, profile_.x[k] - spacings * (profile_.x[k + near - 1] - profile_.x[k]));
+        }
         if (!(at > leaf.lower && at < leaf.upper)) return;
         const double width = leaf.upper - leaf.lower;
         auto term = [&](double mass, double part) {

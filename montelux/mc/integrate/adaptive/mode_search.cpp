@@ -21,9 +21,9 @@ constexpr double longest_step = 0.3;      // of a coordinate
 constexpr std::size_t whole_curvature = 6;
 constexpr std::array survey_scales{3.0, 6.0, 12.0, 24.0}; // standard deviations around a mode
 constexpr std::size_t surveyed_modes = 2;
-// Distance that climbing keeps from the faces: differences must show curvatures there. Tops whose widths are known may lie
-// closer.
-constexpr double least_coordinate = 1e-6, closest_coordinate = 1e-12;
+// Distance that climbing keeps from the faces, and its bound by the known width of a peak: differences, which reach half as
+// far, must show curvatures there.
+constexpr double least_coordinate = 1e-6, least_of_extent = 1e-3;
 
 class Climber {
   public:
@@ -307,8 +307,11 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
         });
     };
     for (const Witness& peak : settings.peaks) {
+        const double extent = *std::ranges::min_element(peak.extent);
+        const double least = std::min(least_coordinate, least_of_extent * extent);
         std::vector<double> at = peak.u;
-        const double top = climber.climb(at, *std::ranges::min_element(peak.extent), closest_coordinate);
+        for (double& u : at) u = std::clamp(u, least, 1 - least);
+        const double top = climber.climb(at, extent, least);
         if (top == nowhere || is_known(at)) continue;
         std::optional<Gaussian> mode = climber.laplace(at, top, settings.widest, peak.extent);
         // A cusp or a corner has no curvature: as wide as it is at half its height.

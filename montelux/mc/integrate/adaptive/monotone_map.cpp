@@ -13,8 +13,7 @@ namespace {
 // Open at both ends, so that no coordinate is mapped to infinity.
 constexpr double smallest_u = 0x1p-53, largest_u = 1 - 0x1p-53;
 constexpr double least_position = 1e-290;
-constexpr double jump_ratio = 5; // between bins, of the slopes: above it the slope is not joined
-constexpr double end_ratio = 4;  // slopes are extrapolated to the ends within this factor
+constexpr double end_ratio = 4; // slopes are extrapolated to the ends within this factor
 
 } // namespace
 
@@ -40,7 +39,7 @@ MonotoneMap::MonotoneMap(std::vector<double> edges, std::vector<double> masses, 
     auto mean_slope = [](const Bin& b) { return b.dx / b.du; };
     auto joined = [&](std::size_t k) { // bins k - 1 and k
         const double ratio = mean_slope(bins_[k]) / mean_slope(bins_[k - 1]);
-        return ratio <= jump_ratio && ratio >= 1 / jump_ratio;
+        return ratio <= MonotoneMap::jump_ratio && ratio >= 1 / MonotoneMap::jump_ratio;
     };
     // At an inner edge the logarithm of the slope is interpolated between the bins' middles.
     for (std::size_t k = 1; k < n; ++k)

@@ -15,6 +15,9 @@ namespace montelux {
 // bins whose densities differ by more than a factor of five the slope may jump, as some integrands do.
 class MonotoneMap {
   public:
+    static constexpr double jump_ratio =
+        5; // of the densities of neighbouring bins, above which the slope is not joined
+
     // The identity.
     MonotoneMap() : MonotoneMap({0, 1}, {1}) {}
     // Bin k is [edges[k], edges[k + 1]], strictly increasing from 0 to 1; masses are positive and are

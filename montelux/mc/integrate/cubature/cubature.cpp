@@ -62,7 +62,8 @@ class CubatureEstimator final : public Estimator {
         // suffice.
         if (!regions_.empty() && !verification_.recalled(regions_.count()) &&
             (reached(request) || (!request.targeted() && verification_.outgrown(regions_.count())))) {
-            if (verification_.recall(regions_, totals_.value(), totals_.error(), request)) add_up();
+            verification_.recall(regions_, totals_.value(), totals_.error(), request);
+            add_up();
             return StepOutcome::advanced;
         }
         verification_.update(regions_, totals_.value(), totals_.error(), request);
@@ -250,10 +251,10 @@ class CubatureEstimator final : public Estimator {
 
     // No region is left to halve. The error of equal values falls with the number of points.
     StepOutcome end(const StepRequest& request) {
-        if (!verification_.recalled(regions_.count()) &&
-            verification_.recall(regions_, totals_.value(), totals_.error(), request)) {
+        if (!verification_.recalled(regions_.count())) {
+            const bool wrong = verification_.recall(regions_, totals_.value(), totals_.error(), request);
             add_up();
-            return StepOutcome::advanced;
+            if (wrong) return StepOutcome::advanced;
         }
         if (verification_.due(regions_, totals_.value(), totals_.error(), evaluations_, request, true))
             return verify(request);

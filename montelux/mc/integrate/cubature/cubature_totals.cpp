@@ -47,7 +47,7 @@ void CubatureTotals::add_up(const CubatureRegions& regions, const CubatureVerifi
         value_[c] = value.value();
         inflation_[c] = expected_[c] > 0 ? std::max(1.0, std::sqrt(disagreement_[c] / expected_[c])) : 1;
         error_[c] = error.value() * inflation_[c] * caution(regions.count());
-        error_[c] *= confirmation.factor(c);
+        error_[c] *= confirmation.factor(c) * verification.drift(c);
         error_[c] += verification.slack(c);
         rule_error_[c] = error_[c];
         equal_[c] = lowest == highest && lowest != 0;

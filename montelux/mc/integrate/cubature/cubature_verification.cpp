@@ -36,6 +36,7 @@ constexpr std::size_t most_climbs = 8;   // of a check
 constexpr std::size_t most_seen = 256;   // surprises that are kept for later
 constexpr double shown_by_checks = 0.01; // error that they can show, as a share of the tolerance
 constexpr double share_of_claim = 0.25;  // of an error that was claimed and confirmed, which stays
+constexpr double caution_of_drift = 2;   // errors that halve from check to check move the value by half
 constexpr double peak_widening = 2;      // volume of a peak over that of its half height
 
 // The least volume that holds half of the integral of |g|, of the component that is most concentrated.
@@ -129,7 +130,8 @@ void save_witness(StateWriter& state, const CubatureWitness& w) {
 CubatureVerification::CubatureVerification(const Problem& problem, std::uint64_t points)
     : problem_(problem), points_(points), residual_(problem.evaluator.components(), problem.full_covariance),
       lowest_(static_cast<std::size_t>(problem.evaluator.components()), infinity),
-      highest_(lowest_.size(), -infinity), next_(4 * points), shown_(lowest_.size(), 0.0) {}
+      highest_(lowest_.size(), -infinity), next_(4 * points), shown_(lowest_.size(), 0.0),
+      claimed_(lowest_.size(), 0.0), drift_(lowest_.size(), 1.0) {}
 
 bool CubatureVerification::verified(std::span<const double> value) const {
     if (points_ == 0) return true;
@@ -224,6 +226,7 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     next_ = 8 * std::max(next_, points);
     tolerance_ = std::move(tolerance);
     residual_ = std::move(check->residual);
+    note_drift(value);
     checked_value_.assign(value.begin(), value.end());
     checked_error_.assign(error.begin(), error.end());
     slack_.resize(lowest_.size(), 0.0);
@@ -247,7 +250,8 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
         disagrees_ = true;
         if (rounds_ < most_rounds) add_differences(regions, *check, c);
     }
-    if ((disagrees_ || !witnesses_.empty()) && rounds_ >= most_rounds) {
+    unsurprised_ = !disagrees_ && witnesses_.empty();
+    if (!unsurprised_ && rounds_ >= most_rounds) {
         witnesses_.clear();
         warning_ = "random points keep disagreeing with the rules (" + std::to_string(rounds_) + " checks)";
         return points + climbed;
@@ -256,6 +260,15 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     for (const CubatureWitness& w : witnesses_) of_regions.push_back(w.region);
     add_errors(regions, of_regions);
     return points + climbed;
+}
+
+void CubatureVerification::note_drift(std::span<const double> value) {
+    if (checked_value_.empty() || !unsurprised_) return;
+    for (std::size_t c = 0; c < value.size(); ++c) {
+        const double ratio =
+            checked_error_[c] > 0 ? std::abs(value[c] - checked_value_[c]) / checked_error_[c] : 0;
+        drift_[c] = std::isfinite(ratio) && ratio > 1 ? caution_of_drift * ratio * drift_[c] : 1;
+    }
 }
 
 bool CubatureVerification::recalled(std::size_t regions) const {
@@ -294,9 +307,12 @@ bool CubatureVerification::recall(CubatureRegions& regions, std::span<const doub
     if (!of_regions.empty()) add_errors(regions, of_regions);
     const bool jumps = problem_.evaluator.dimensions() == 1 && raise_seam_errors(regions);
     const bool wrong = jumps || !of_regions.empty();
-    // Once wrong, rules claim no smaller error than the checks can show.
-    for (std::size_t c = 0; wrong && c < value.size(); ++c)
-        shown_[c] = shown_by_checks * request.tolerance(c, value[c]);
+    unsurprised_ = unsurprised_ && !wrong;
+    bool doubtful = wrong;
+    for (std::size_t r = 0; r < regions.count(); ++r) doubtful = doubtful || regions.marks(r).rough;
+    // Where rules were wrong or do not converge fast, they claim no smaller error than the checks can show.
+    for (std::size_t c = 0; c < value.size(); ++c)
+        shown_[c] = doubtful ? shown_by_checks * request.tolerance(c, value[c]) : 0;
     return wrong;
 }
 
@@ -307,8 +323,8 @@ void CubatureVerification::revisit(CubatureRegions& regions) {
 }
 
 void CubatureVerification::claim(std::span<const double> error) {
-    for (std::size_t c = 0; c < shown_.size(); ++c)
-        if (std::isfinite(error[c])) shown_[c] = share_of_claim * error[c];
+    for (std::size_t c = 0; c < claimed_.size(); ++c)
+        if (std::isfinite(error[c])) claimed_[c] = share_of_claim * error[c];
 }
 
 void CubatureVerification::add_differences(CubatureRegions& regions, const CubatureCheck& check,
@@ -408,6 +424,9 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(points_in_bulk_);
     state.put(slack_);
     state.put(shown_);
+    state.put(claimed_);
+    state.put(drift_);
+    state.put(unsurprised_);
     state.put(surprised_);
     state.put(disagrees_);
     montelux::save(state, non_finite_);
@@ -448,7 +467,12 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     points_in_bulk_ = state.get_double();
     slack_ = state.get_doubles();
     shown_ = state.get_doubles();
+    claimed_ = state.get_doubles();
     fits(shown_, m);
+    fits(claimed_, m);
+    drift_ = state.get_doubles();
+    fits(drift_, m);
+    unsurprised_ = state.get<bool>();
     surprised_ = state.get<int>() != 0;
     if (!slack_.empty()) fits(slack_, m);
     disagrees_ = state.get<int>() != 0;

@@ -1,6 +1,7 @@
 // Verification of a cubature's regions by random points, with the surprises found.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -70,8 +71,10 @@ class CubatureVerification {
     bool blind() const { return points_in_bulk_ < enough_in_bulk; }
     // Additional error of a component if points have shown that the rules may be wrong.
     double slack(std::size_t component) const {
-        return std::max(slack_.empty() ? 0.0 : slack_[component], shown_[component]);
+        return std::max({slack_.empty() ? 0.0 : slack_[component], shown_[component], claimed_[component]});
     }
+    // By which a component's errors must grow: the value moved by more than they between two checks that found nothing.
+    double drift(std::size_t component) const { return drift_[component]; }
     // Normally empty.
     const std::string& warning() const { return warning_; }
 
@@ -88,6 +91,7 @@ class CubatureVerification {
     // Errors of regions whose points disagree with their rule, if the whole disagrees.
     void add_differences(CubatureRegions& regions, const CubatureCheck& check, std::size_t component);
     void add_errors(CubatureRegions& regions, std::span<const std::size_t> of_regions);
+    void note_drift(std::span<const double> value);
 
     Problem problem_;
     std::uint64_t points_;
@@ -102,9 +106,11 @@ class CubatureVerification {
     NonFiniteCount non_finite_;
     double points_in_bulk_ = 0;
     bool surprised_ = false; // by any check
-    std::vector<double> slack_,
-        shown_;              // by checks; by what was seen before, once it showed rules to be wrong
-    bool disagrees_ = false; // the mean of the points, in the last check
+    // Least errors: after surprises; where rules were wrong or do not converge fast; of what was claimed and confirmed.
+    std::vector<double> slack_, shown_, claimed_;
+    std::vector<double> drift_;
+    bool unsurprised_ = false; // since before the last check
+    bool disagrees_ = false;   // the mean of the points, in the last check
     std::string warning_;
 };
 

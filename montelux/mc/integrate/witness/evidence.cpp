@@ -170,12 +170,16 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
             least[c] += unresolved;
         }
         if (!tally.statistical) continue;
-        double missed = 0;
+        // Several corners add up; what lies closer to an edge contains what lies closer to its corners.
+        std::vector<double> missed_at(static_cast<std::size_t>(evaluator_.dimensions()) + 1, 0.0);
+        double most = 0;
         const SlowShells* at = nullptr;
         for (std::size_t i = 0; i < look_.slow.size(); ++i) {
             const double mass = unreached(look_.slow[i], c, slow_densities[i], points);
-            if (mass > missed) missed = mass, at = &look_.slow[i];
+            missed_at[static_cast<std::size_t>(look_.slow[i].codimension())] += mass;
+            if (mass > most) most = mass, at = &look_.slow[i];
         }
+        const double missed = *std::ranges::max_element(missed_at);
         if (at && missed > tolerance) {
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than the points reach", missed,

@@ -22,7 +22,7 @@ constexpr std::array<double, 6> ladder{3, 8, 15, 24, 36, 50};
 constexpr double suspicious = 0.2; // of the inner shells' masses beside the outer ones'
 constexpr double matters = 1e-3;   // of the greatest mass of a shell: a difference between two
 constexpr double outstanding = 16; // times the median of the look
-constexpr std::size_t most_peaks = 3, most_slow = 8;
+constexpr std::size_t most_peaks = 3, most_slow = 16, most_corners = 8;
 constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 constexpr std::size_t most_anchors = 16; // of a variable
 
@@ -81,6 +81,9 @@ class Look {
                 if (const Witness* top = best()) walk(line_paths(d, Point(top->u)), false);
             }
         }
+        if (std::ranges::any_of(look_.slow,
+                                [&](const SlowShells& s) { return s.codimension() == static_cast<int>(n_); }))
+            walk(corner_paths());
         find_peaks();
         look_.evaluations = raw_.evaluations();
         look_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -178,6 +181,21 @@ class Look {
         return paths;
     }
 
+    // Ladders to corners: where one of them is slow, others may be.
+    std::vector<Path> corner_paths() {
+        std::vector<Path> paths;
+        for (std::size_t i = 0; i < most_corners; ++i) {
+            Path path{{}, {}, std::vector<double>(n_, 1.0)};
+            for (std::size_t d = 0; d < n_; ++d) {
+                const bool upper = n_ <= 3 ? i >> d & 1 : random() < 0.5;
+                path.anchors.push_back(anchors_[d][upper ? 1 : 0]);
+                path.side.push_back(upper ? -1 : 1);
+            }
+            paths.push_back(std::move(path));
+        }
+        return paths;
+    }
+
     Point generic_point() {
         Point u(n_);
         for (double& c : u) c = 0.25 + 0.5 * random();
@@ -212,15 +230,18 @@ class Look {
         for (std::size_t p = 0; p < walked; ++p) note_slow(paths[p], rows, p * ladder.size());
     }
 
-    // Keeps a ladder whose masses fall slowly; in several variables, the smaller values of it and of another one to the
-    // same face or corner, since it may lie on a ridge.
+    // Keeps a ladder whose masses fall slowly. In several variables the smaller values of it and of another one to the
+    // same face or corner, at whose points densities are compared: the first may lie on a ridge.
     void note_slow(const Path& path, const std::vector<std::vector<double>>& rows, std::size_t first) {
-        if (look_.slow.size() == most_slow || std::ranges::any_of(path.anchors, [&](const Anchor& a) {
-                return path.side[static_cast<std::size_t>(&a - path.anchors.data())] != 0 && a.u != 0 &&
-                       a.u != 1;
-            }))
+        SlowShells slow{std::vector<double>(n_, SlowShells::free), {}, {}};
+        for (std::size_t d = 0; d < n_; ++d) {
+            if (path.side[d] == 0) continue;
+            slow.place[d] = path.anchors[d].u;
+            if (slow.place[d] != 0 && slow.place[d] != 1) return;
+        }
+        if (look_.slow.size() == most_slow ||
+            std::ranges::find(look_.slow, slow.place, &SlowShells::place) != look_.slow.end())
             return;
-        SlowShells slow{path.codimension(), {}, {}};
         const double finest = std::min(path.finest(), ladder.back()) / ladder.back();
         for (std::size_t i = 0; i < ladder.size(); ++i) {
             const double k = ladder[i] * finest;
@@ -239,10 +260,12 @@ class Look {
             std::vector<Point> points;
             for (double k : slow.exponents) points.push_back(other.at(k));
             const auto seen = raw_(points);
-            for (std::size_t i = 0; i < points.size(); ++i)
+            for (std::size_t i = 0; i < points.size(); ++i) {
+                slow.shells[i].u = points[i];
                 for (std::size_t c = 0; c < components(); ++c)
                     slow.shells[i].value[c] =
                         std::min(std::abs(slow.shells[i].value[c]), std::abs(seen[i][c]));
+            }
             if (!any_slow(slow)) return;
         }
         look_.slow.push_back(std::move(slow));
@@ -257,7 +280,7 @@ class Look {
             if (std::ranges::all_of(slow.shells,
                                     [c](const Witness& w) { return std::isfinite(w.value[c]); }) &&
                 fall_slowly(mass(outer), mass(inner), slow.exponents[inner] - slow.exponents[outer],
-                            slow.codimension))
+                            slow.codimension()))
                 return true;
         }
         return false;

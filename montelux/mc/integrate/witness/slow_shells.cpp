@@ -18,6 +18,10 @@ double between(double first, double last, double length) {
 
 } // namespace
 
+int SlowShells::codimension() const {
+    return static_cast<int>(std::ranges::count_if(place, [](double u) { return u != free; }));
+}
+
 bool fall_slowly(double outer_mass, double inner_mass, double exponents_between, int codimension) {
     return outer_mass > 0 && inner_mass > 0 && std::isfinite(outer_mass) && std::isfinite(inner_mass) &&
            std::log2(outer_mass / inner_mass) < slow * codimension * exponents_between;
@@ -25,7 +29,7 @@ bool fall_slowly(double outer_mass, double inner_mass, double exponents_between,
 
 double unreached(const SlowShells& slow, std::size_t c, std::span<const double> q, double points) {
     const std::size_t count = slow.shells.size();
-    const double n = slow.codimension;
+    const double n = slow.codimension();
     std::vector<double> mass, expected; // per unit of the exponent; of the points
     for (std::size_t i = 0; i < count; ++i) {
         const Witness& shell = slow.shells[i];
@@ -36,14 +40,19 @@ double unreached(const SlowShells& slow, std::size_t c, std::span<const double> 
     if (expected[0] < 1 && expected[0] > 0)
         sum += mass[0] * std::min(slow.exponents[0], -std::log2(expected[0]) / n);
     for (std::size_t i = 0; i + 1 < count; ++i) {
-        if (expected[i + 1] >= 1) continue;
         const double length = slow.exponents[i + 1] - slow.exponents[i];
-        double reached = 0; // share of the interval
-        if (expected[i] > 1)
-            reached =
-                expected[i + 1] > 0 ? std::log(expected[i]) / std::log(expected[i] / expected[i + 1]) : 0;
-        const double from = mass[i] > 0 ? mass[i] * std::pow(mass[i + 1] / mass[i], reached) : 0;
-        sum += between(from, mass[i + 1], length * (1 - reached));
+        double first = 0, end = 1; // the part of the interval where fewer than one point is expected
+        if ((expected[i] < 1) != (expected[i + 1] < 1)) {
+            const double crossing = expected[i] > 0 && expected[i + 1] > 0
+                                        ? std::log(expected[i]) / std::log(expected[i] / expected[i + 1])
+                                        : 0;
+            (expected[i] < 1 ? end : first) = crossing;
+        } else if (expected[i] >= 1) {
+            continue;
+        }
+        const double ratio = mass[i] > 0 ? mass[i + 1] / mass[i] : 0;
+        sum +=
+            between(mass[i] * std::pow(ratio, first), mass[i] * std::pow(ratio, end), length * (end - first));
     }
     const double last = slow.exponents[count - 1] - slow.exponents[count - 2];
     const double fall = mass[count - 1] > 0 ? std::log(mass[count - 2] / mass[count - 1]) / last : 0;
@@ -52,13 +61,13 @@ double unreached(const SlowShells& slow, std::size_t c, std::span<const double> 
 }
 
 void save(StateWriter& state, const SlowShells& slow) {
-    state.put(slow.codimension);
+    state.put(slow.place);
     state.put(slow.exponents);
     for (const Witness& w : slow.shells) save(state, w);
 }
 
 void load(StateReader& state, SlowShells& slow) {
-    slow.codimension = state.get<int>();
+    slow.place = state.get_doubles();
     slow.exponents = state.get_doubles();
     slow.shells.resize(slow.exponents.size());
     for (Witness& w : slow.shells) load(state, w);

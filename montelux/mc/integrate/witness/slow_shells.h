@@ -13,9 +13,12 @@ namespace montelux {
 // Values on the way to a face, an edge or a corner, from outside to inside. Masses of its dyadic shells fall so slowly that
 // uniform points have an infinite variance there: |g| ~ r^-a, where 2 a is at least the codimension.
 struct SlowShells {
-    int codimension = 1;
+    static constexpr double free = 0.5;
+    std::vector<double> place;     // of the face, edge or corner: 0, 1 or `free`
     std::vector<Witness> shells;   // with their volumes, of 2^(-codimension k) each
     std::vector<double> exponents; // k
+
+    int codimension() const;
 };
 
 // Do masses fall so slowly between two shells?

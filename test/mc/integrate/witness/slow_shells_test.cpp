@@ -11,7 +11,7 @@ namespace {
 
 // Shells of r^-power around a corner of n variables.
 SlowShells power_law(double power, int n) {
-    SlowShells slow{n, {}, {}};
+    SlowShells slow{std::vector<double>(static_cast<std::size_t>(n), 0.0), {}, {}};
     for (double k : {3.0, 8.0, 15.0, 24.0, 36.0, 50.0}) {
         slow.exponents.push_back(k);
         slow.shells.push_back({std::vector<double>(static_cast<std::size_t>(n), std::exp2(-k)),
