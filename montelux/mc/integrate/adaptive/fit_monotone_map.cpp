@@ -86,17 +86,6 @@ class Splitter {
             if (leaf.first + kept + 1 >= k) return;
             at = profile_.x[k - 1 - kept];
         }
-        // At a jump the true place lies up to a few points of the denser side farther out; beyond an edge that is drawn too
-        // near, points would be rare and heavy.
-        const double left_height = left / (at - leaf.lower), right_height = right / (leaf.upper - at);
-        if (!no_left && !no_right) {
-            const std::size_t near = std::min(nearby, least_);
-            const double spacings = margin / static_cast<double>(near);
-            if (left_height > MonotoneMap::jump_ratio * right_height)
-                at = std::max(at, profile_.x[k - 1] + spacings * (profile_.x[k - 1] - profile_.x[k - near]));
-            if (right_height > MonotoneMap::jump_ratio * left_height)
-                at = std::min(at, profile_.x[k] - spacings * (profile_.x[k + near - 1] - profile_.x[k]));
-        }
         if (!(at > leaf.lower && at < leaf.upper)) return;
         const double width = leaf.upper - leaf.lower;
         auto term = [&](double mass, double part) {
@@ -106,8 +95,24 @@ class Splitter {
         if (!(gain > leaf.gain)) return;
         leaf.gain = gain;
         leaf.split = k;
-        leaf.at = at;
+        const double beyond = no_left || no_right ? at : beyond_jump(leaf, k, at);
+        leaf.at = beyond > leaf.lower && beyond < leaf.upper ? beyond : at;
         leaf.empty_side = no_left || no_right;
+    }
+
+    // At a jump the true place lies up to a few points of the denser side farther out than halfway to the next point. If an
+    // edge is drawn too near, points beyond it are rare and heavy.
+    double beyond_jump(const Leaf& leaf, std::size_t k, double at) const {
+        const double left = profile_.mass(leaf.first, k) / (at - leaf.lower),
+                     right = profile_.mass(k, leaf.last) / (leaf.upper - at);
+        const std::size_t near = std::min(nearby, least_);
+        const double spacings = margin / static_cast<double>(near);
+        const std::vector<double>& x = profile_.x;
+        if (left > MonotoneMap::jump_ratio * right)
+            return std::max(at, x[k - 1] + spacings * (x[k - 1] - x[k - near]));
+        if (right > MonotoneMap::jump_ratio * left)
+            return std::min(at, x[k] - spacings * (x[k + near - 1] - x[k]));
+        return at;
     }
 
     const Profile& profile_;

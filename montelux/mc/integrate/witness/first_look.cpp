@@ -73,6 +73,7 @@ class Look {
         const auto begin = std::chrono::steady_clock::now();
         std::vector<Path> paths = n_ == 1 ? line_paths(0, {}) : joint_paths();
         walk(paths);
+        if (n_ > 1 && !look_.slow.empty()) walk(corner_paths());
         if (n_ > 1) {
             for (std::size_t d = 0; d < n_ && affordable(4 * ladder.size()); ++d) {
                 // Through a generic point, where no other variable is near a pole of its own; then through the
@@ -81,9 +82,6 @@ class Look {
                 if (const Witness* top = best()) walk(line_paths(d, Point(top->u)), false);
             }
         }
-        if (std::ranges::any_of(look_.slow,
-                                [&](const SlowShells& s) { return s.codimension() == static_cast<int>(n_); }))
-            walk(corner_paths());
         find_peaks();
         look_.evaluations = raw_.evaluations();
         look_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();

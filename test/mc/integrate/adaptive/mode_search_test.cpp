@@ -129,6 +129,29 @@ TEST(FindModes, GaussianHasTheCurvatureOfACorrelatedPeak) {
     for (int k : {0, 2, 3}) EXPECT_NEAR(s.modes[0].cholesky()[k], truth.cholesky()[k], 1e-3);
 }
 
+// Half of a peak, cut off by faces: its width is that of the peak, and peaks elsewhere are found.
+TEST(FindModes, KnownTopsAtFacesHaveTheirCurvature) {
+    constexpr double width = 0.02;
+    const auto f = [](const std::vector<double>& x) {
+        double sum = 0;
+        for (double top : {0.0, 0.5, 1.0}) {
+            double squares = 0;
+            for (double v : x) squares += (v - top) * (v - top);
+            sum += std::exp(-squares / (2 * width * width));
+        }
+        return sum;
+    };
+    const std::vector<Witness> known{{{1e-15, 1e-11}, {1}, 1e-3, {1.18 * width, 1.18 * width}}};
+    const Search s = search(f, 2, 2048, {.max_evaluations = 8000, .peaks = known});
+    ASSERT_EQ(s.modes.size(), 3u);
+    for (const Gaussian& g : s.modes)
+        for (int d : {0, 1}) {
+            std::vector<double> off(g.mean().begin(), g.mean().end());
+            off[static_cast<std::size_t>(d)] += width;
+            EXPECT_NEAR(g.squared_distance(off), 1, 0.1);
+        }
+}
+
 TEST(FindModes, InventsNoneForSmoothFunctions) {
     auto linear = [](const std::vector<double>& x) { return x[0] + x[1] + x[2]; };
     auto bump = [](const std::vector<double>& x) {

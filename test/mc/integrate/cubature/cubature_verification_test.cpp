@@ -113,6 +113,19 @@ TEST(CubatureVerification, JumpsAskForMorePoints) {
     EXPECT_EQ(points_of_check(smooth, 2, 1e-3, 1000), 1000u);
 }
 
+// Around a singular point of two scales halving along one axis at a time moves the value by a small part of its error
+// only, and null rules see even less.
+TEST(CubatureVerification, ErrorsGrowWhereTheValueDriftsFromCheckToCheck) {
+    const Integrand f([](std::span<const double> x) { return 1 / (x[0] * x[0] + x[1]); });
+    const double exact = std::numbers::ln2 + std::numbers::pi / 2;
+    for (double target : {1e-3, 1e-4, 1e-5})
+        for (std::uint64_t seed = 1; seed <= 4; ++seed) {
+            const IntegrationResult r = integrate(f, Domain::unit_cube(2), Cubature{},
+                                                  {.relative_error = target}, {.seed = seed, .threads = 1});
+            EXPECT_LT(std::abs(r.value[0] - exact), 4 * r.standard_error[0]) << r;
+        }
+}
+
 TEST(CubatureVerification, EqualValuesHaveAnError) {
     // 1.2e-4 of the square is missing, which 65 points do not see.
     const Integrand f([](std::span<const double> x) { return x[0] * x[1] < 1.3e-5 ? 0.0 : 1.0; });

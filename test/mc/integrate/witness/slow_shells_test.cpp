@@ -1,9 +1,12 @@
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <string>
 #include <vector>
 
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/witness/first_look.h"
 #include "montelux/mc/integrate/witness/slow_shells.h"
 
 namespace montelux {
@@ -48,6 +51,27 @@ TEST(SlowShells, MassThatPointsDoNotReach) {
     for (double k : power_law(0.8, 1).exponents) q.push_back(0.2 * std::exp2(0.8 * k));
     EXPECT_LT(unreached(power_law(0.8, 1), 0, q, 1e9), 2e-8);
     EXPECT_GT(unreached(power_law(0.8, 1), 0, q, 1e2), 2e-3);
+}
+
+// A density that is high at one distance alone, as a Gaussian near the corner is, hides nothing before or behind it.
+TEST(SlowShells, MassBeforeAndBehindADensePlace) {
+    const SlowShells shells = power_law(0.9, 1);
+    std::vector<double> q(6, 1e-12);
+    const double nothing = unreached(shells, 0, q, 1);
+    q[2] = 1e12;
+    EXPECT_GT(unreached(shells, 0, q, 1), 0.3 * nothing);
+    EXPECT_LT(unreached(shells, 0, q, 1), 0.9 * nothing);
+}
+
+TEST(SlowShells, OneSlowCornerCallsForTheOthers) {
+    const auto f = [](std::span<const double> x) {
+        return std::pow(1 + x[0] * x[0] + x[1] * x[1] + x[2] * x[2], -1.6);
+    };
+    for (std::uint64_t seed : {1, 2, 3}) {
+        const FirstLook look =
+            first_look(Evaluator(f, Domain(std::vector<Range>(3, {-infinity, infinity}))), {.seed = seed});
+        EXPECT_EQ(std::ranges::count(look.slow, 3, &SlowShells::codimension), 8);
+    }
 }
 
 // Errors cover what lies closer to a corner or a face than the points: exact values by iterated integration.
