@@ -27,7 +27,8 @@ constexpr std::uint64_t regions_all_confirmed =
     32; // of one variable, of which all are halved to confirm the others
 // Ratios of successive differences: the least that counts as slow (a jump has 1/2), and the largest that is assumed.
 constexpr double slow_ratio = 0.6, slowest_ratio = 0.999;
-constexpr double caution_of_series = 2; // differences depend on where in a region a pole lies
+// Differences depend on where in a region a pole lies.
+constexpr double caution_of_series = 2, ratios_of_mean = 8;
 // Points after which an integrand with equal values at all of them is taken as constant.
 constexpr std::uint64_t most_equal_values = 1 << 21;
 
@@ -77,7 +78,10 @@ class CubatureEstimator final : public Estimator {
             fresh.add_cube();
             rules.push_back(regions_.empty() && started_coarse() ? &*coarse_ : &*fine_);
         } else {
-            if (confirms) parents = regions_to_confirm(request);
+            if (confirms)
+                parents = regions_to_confirm(request);
+            else if (is_beyond_division(request))
+                return end(request);
             // Halving regions does not reduce the error of equal values.
             else if (searching() || reached(request) || !reaches(totals_.rule_error(), request))
                 parents = regions_to_halve(regions_, scales(request), searching());
@@ -269,6 +273,18 @@ class CubatureEstimator final : public Estimator {
         return StepOutcome::finished;
     }
 
+    // Do regions that cannot be halved have larger errors than the target?
+    bool is_beyond_division(const StepRequest& request) const {
+        if (!request.targeted()) return false;
+        for (std::size_t c = 0; c < components(); ++c) {
+            double sum = 0;
+            for (std::size_t r = 0; r < regions_.count(); ++r)
+                if (regions_.marks(r).indivisible) sum += regions_.error(r)[c];
+            if (sum > request.tolerance(c, totals_.value()[c])) return true;
+        }
+        return false;
+    }
+
     // All values of a component were zero so far: its part may not have been found.
     bool searching() const {
         const bool all_seen = std::ranges::all_of(nonzero_, [](char c) { return c != 0; });
@@ -317,13 +333,20 @@ class CubatureEstimator final : public Estimator {
                 }
                 // Towards a pole the differences of successive halvings fall as a geometric series, slowly for a power
                 // close to -1: the larger half is off by the sum of those to come.
-                const double before = regions_.difference(parent, c);
-                const double ratio = before > 0 ? std::min(difference / before, slowest_ratio) : 0;
                 const std::size_t half = of_a >= of_b ? a : b;
+                CubatureRegions::Series series = regions_.series(parent, c);
+                if (series.difference > 0 && difference > 0) {
+                    series.ratios = std::min(series.ratios + 1, ratios_of_mean);
+                    series.log_ratio +=
+                        (std::log(difference / series.difference) - series.log_ratio) / series.ratios;
+                }
+                const double ratio =
+                    series.ratios > 0 ? std::min(std::exp(series.log_ratio), slowest_ratio) : 0;
                 if (ratio > slow_ratio)
                     halves.error(half)[c] =
                         std::max(halves.error(half)[c], caution_of_series * difference * ratio / (1 - ratio));
-                halves.difference(half, c) = difference;
+                series.difference = difference;
+                halves.series(half, c) = series;
             }
         }
         std::size_t next = regions_.count();

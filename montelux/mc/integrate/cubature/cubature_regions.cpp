@@ -49,7 +49,7 @@ void CubatureRegions::resize(std::size_t count) {
     face_error_.resize(count * m_);
     lowest_.resize(count * m_);
     highest_.resize(count * m_);
-    difference_.resize(count * m_, 0.0);
+    series_.resize(count * m_);
     if (n_ == 1) faces_.resize(2 * count * m_);
     marks_.resize(count);
 }
@@ -81,14 +81,15 @@ void CubatureRegions::copy(std::size_t to, const CubatureRegions& from, std::siz
     std::ranges::copy(from.lowest(r), lowest(to).begin());
     std::ranges::copy(from.highest(r), highest(to).begin());
     for (std::size_t i = 0; n_ == 1 && i < 2 * m_; ++i) faces_[2 * to * m_ + i] = from.faces_[2 * r * m_ + i];
-    for (std::size_t c = 0; c < m_; ++c) difference_[to * m_ + c] = from.difference_[r * m_ + c];
+    for (std::size_t c = 0; c < m_; ++c) series_[to * m_ + c] = from.series_[r * m_ + c];
     marks(to) = from.marks(r);
 }
 
 void CubatureRegions::save(StateWriter& state) const {
-    for (const auto* numbers :
-         {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_, &difference_})
+    for (const auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_})
         state.put(*numbers);
+    for (const Series& q : series_)
+        for (double x : {q.difference, q.log_ratio, q.ratios}) state.put(x);
     for (const Face& f : faces_)
         for (double x : {f.value, f.slack, f.unseen}) state.put(x);
     for (const Marks& m : marks_)
@@ -97,14 +98,16 @@ void CubatureRegions::save(StateWriter& state) const {
 }
 
 void CubatureRegions::load(StateReader& state) {
-    for (auto* numbers :
-         {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_, &difference_})
+    for (auto* numbers : {&centre_, &half_width_, &value_, &error_, &face_error_, &lowest_, &highest_})
         *numbers = state.get_doubles();
     const std::size_t regions = centre_.size() / n_;
     if (centre_.size() != regions * n_ || half_width_.size() != regions * n_ ||
         std::ranges::any_of(std::array{&value_, &error_, &face_error_, &lowest_, &highest_},
                             [&](const auto* numbers) { return numbers->size() != regions * m_; }))
         throw Error("the saved regions do not fit the dimensions or components");
+    series_.resize(regions * m_);
+    for (Series& q : series_)
+        for (double* x : {&q.difference, &q.log_ratio, &q.ratios}) *x = state.get_double();
     faces_.resize(n_ == 1 ? 2 * regions * m_ : 0);
     for (Face& f : faces_)
         for (double* x : {&f.value, &f.slack, &f.unseen}) *x = state.get_double();

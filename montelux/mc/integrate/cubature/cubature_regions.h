@@ -27,7 +27,7 @@ class CubatureRegions {
     std::size_t count() const { return marks_.size(); }
     bool empty() const { return marks_.empty(); }
     // Bytes that one region takes.
-    std::size_t bytes_each() const { return 8 * (2 * n_ + 6 * m_) + sizeof(Marks); }
+    std::size_t bytes_each() const { return 8 * (2 * n_ + 8 * m_) + sizeof(Marks); }
 
     std::span<double> centre(std::size_t r) { return {&centre_[r * n_], n_}; }
     std::span<const double> centre(std::size_t r) const { return {&centre_[r * n_], n_}; }
@@ -49,8 +49,12 @@ class CubatureRegions {
     struct Face {
         double value, slack, unseen;
     };
-    // Difference between the value of the halved region and those of its halves; kept by the half of the larger error.
-    double& difference(std::size_t r, std::size_t c) { return difference_[r * m_ + c]; }
+    // Differences between the values of halved regions and those of their halves, kept by the half of the larger error:
+    // the last one, and the mean logarithm of the ratios of one to that before.
+    struct Series {
+        double difference = 0, log_ratio = 0, ratios = 0; // ratios: their number
+    };
+    Series& series(std::size_t r, std::size_t c) { return series_[r * m_ + c]; }
     Face& face(std::size_t r, std::size_t c, bool upper) { return faces_[2 * (r * m_ + c) + upper]; }
     const Face& face(std::size_t r, std::size_t c, bool upper) const {
         return faces_[2 * (r * m_ + c) + upper];
@@ -81,7 +85,8 @@ class CubatureRegions {
     static std::size_t size(int n) { return static_cast<std::size_t>(n); }
 
     std::size_t n_, m_;
-    std::vector<double> centre_, half_width_, value_, error_, face_error_, lowest_, highest_, difference_;
+    std::vector<double> centre_, half_width_, value_, error_, face_error_, lowest_, highest_;
+    std::vector<Series> series_;
     std::vector<Face> faces_; // empty in several variables
     std::vector<Marks> marks_;
 };
