@@ -5,7 +5,8 @@
 
 Takes every so many of the formulas of formulas.tsv. For each method it prints the root mean squared relative error after
 each budget, and names integrals whose error rises from one budget to the next by more than chance: where a rank test of
-the errors (Mann and Whitney 1947) or their mean squares differ by more than four of their own errors.
+the errors (Mann and Whitney 1947) or their mean squares differ by more than four of their own errors. After a time, the
+ratio in brackets is the error there over that of runs with as many evaluations as each of them made.
 """
 
 from __future__ import annotations
@@ -66,27 +67,43 @@ def main() -> int:
     cases: list[Case] = single[::step][: options.integrals]
     budgets = [["--evaluations", n] for n in options.evaluations.split(",") if n]
     budgets += [["--time", t] for t in options.times.split(",") if t]
-    worse = 0
+    worse, of_time = 0, []
     with ThreadPoolExecutor(options.jobs) as pool:
         for method in options.methods.split(","):
             print(f"\n## {method}\n\n| integral | " + " | ".join(" ".join(b)[2:] for b in budgets) + " |")
             print("|---" * (len(budgets) + 1) + "|")
             for case in cases:
-                groups = []
+                groups, ratios = [], []
                 for budget in budgets:
                     jobs = [
                         pool.submit(run, options.program, case, method, "", seed, budget)
                         for seed in range(options.seeds)
                     ]
-                    groups.append(errors([job.result() for job in jobs]))
+                    runs = [job.result() for job in jobs]
+                    groups.append(errors(runs))
+                    ratios.append(math.nan)
+                    if budget[0] != "--time" or any(not r.result for r in runs):
+                        continue
+                    again = [
+                        pool.submit(run, options.program, case, method, "", seed, ["--evaluations", str(r.result["evaluations"])])
+                        for seed, r in enumerate(runs)
+                    ]
+                    same = root_mean_square(errors([job.result() for job in again]))
+                    ratios[-1] = root_mean_square(groups[-1]) / same
+                    of_time.append(ratios[-1])
                 cells, previous = [], None
                 for i, (budget, group) in enumerate(zip(budgets, groups)):
                     rose = previous is not None and budget[0] == budgets[i - 1][0] and rises(previous, group)
                     worse += rose
-                    cells.append(f"{root_mean_square(group):.1e}" + (" WORSE" if rose else ""))
+                    ratio = "" if math.isnan(ratios[i]) else f" ({ratios[i]:.2f})"
+                    cells.append(f"{root_mean_square(group):.1e}{ratio}" + (" WORSE" if rose else ""))
                     previous = group
                 print(f"| {case.name()[:70].replace('|', '/')} | " + " | ".join(cells) + " |", flush=True)
     print(f"\n{worse} of the steps to a larger budget made the error larger than chance does")
+    if of_time:
+        above = sum(r > 1.5 for r in of_time)
+        print(f"Error after a time over that of as many evaluations: median {statistics.median(of_time):.2f}, ", end="")
+        print(f"largest {max(of_time):.2f}, above 1.5 for {above} of {len(of_time)}")
     return 0
 
 

@@ -30,7 +30,8 @@ constexpr double largest_first = 0.25; // share of a fixed number of evaluations
 // With so few evaluations left, in regions, the first one decides: cubature is given up where not even errors
 // falling by this power of the evaluations would do.
 constexpr double few_regions = 32, hopeful_rate = 2;
-constexpr double patience_of_one = 100;   // factor of the evaluations that rules may need in one variable
+constexpr double patience_of_one =
+    100; // factor of the evaluations, or of the error, that rules may need in one variable
 constexpr std::uint64_t patience = 60000; // evaluations of sampling before cubature gets a second chance,
 constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
 // A localised result is compared with sampling at a multiple of the target, within these relative errors.
@@ -368,7 +369,7 @@ class AutoEstimator final : public Estimator {
         const double reached = ratio * std::pow(spent / (spent + left), hopeless ? hopeful_rate : rate);
         if (std::isinf(reached))
             give_up("cubature's value is still zero");
-        else if (reached > alternative && !(one_variable() && reached < 10 * alternative))
+        else if (reached > alternative && !(one_variable() && reached < patience_of_one * alternative))
             give_up("cubature seemed to reach a relative error of " + printed(reached) +
                     ", sampling one of " + printed(alternative));
     }

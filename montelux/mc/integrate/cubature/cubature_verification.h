@@ -97,7 +97,7 @@ class CubatureVerification {
     std::uint64_t points_;
     std::vector<CubatureWitness> witnesses_; // open ones
     std::vector<CubatureWitness> seen_;      // surprises of all checks
-    std::size_t recalled_regions_ = 0, recalled_peaks_ = 0;
+    std::size_t recalled_regions_ = 0, recalled_peaks_ = 0, checked_regions_ = 0;
     std::vector<double> checked_value_, checked_error_, tolerance_; // empty before the first check
     CovarianceMoments residual_;
     std::vector<double> lowest_, highest_;
