@@ -12,6 +12,8 @@
 #include "montelux/mc/integrate/cubature/cubature.h"
 #include "montelux/mc/integrate/cubature/cubature_rules.h"
 #include "montelux/mc/integrate/infinity.h"
+#include "montelux/mc/integrate/trained/unit_density.h"
+#include "montelux/mc/integrate/witness/first_look.h"
 #include "montelux/mc/random/sobol.h"
 
 namespace montelux {
@@ -83,7 +85,7 @@ class AutoEstimator final : public Estimator {
   public:
     explicit AutoEstimator(const Problem& problem)
         : cubature_(Cubature{}.estimator(problem)), sampling_(Adaptive{}.estimator(problem)),
-          dimensions_(problem.evaluator.dimensions()) {}
+          look_(problem.look), dimensions_(problem.evaluator.dimensions()) {}
 
     StepOutcome step(const StepRequest& request) override {
         if (switched_) return step_both(request);
@@ -198,9 +200,14 @@ class AutoEstimator final : public Estimator {
     // a multiple of cubature's.
     Agreement agreement(const StepRequest& request) const {
         const Tally rule = cubature_->tally(), sampled = sampling_->tally();
+        const std::shared_ptr<const UnitDensity> density = sampling_->density();
         bool agree = true;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
-            const double error = sampled.standard_error[c];
+            const double missed =
+                look_
+                    ? unreached(look_->slow, c, density.get(), static_cast<double>(sampled.evaluations)).mass
+                    : 0;
+            const double error = std::hypot(sampled.standard_error[c], missed);
             if (!(error <=
                   std::max(request.tolerance(c, rule.value[c]), comparable * rule.standard_error[c])))
                 return Agreement::unknown;
@@ -387,6 +394,7 @@ class AutoEstimator final : public Estimator {
     }
 
     std::unique_ptr<Estimator> cubature_, sampling_;
+    const FirstLook* look_;
     int dimensions_;
     bool switched_ = false;
     bool comparing_ = false, agreed_ = false; // cubature with sampling

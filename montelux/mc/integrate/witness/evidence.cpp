@@ -123,19 +123,6 @@ std::string Evidence::place(std::span<const double> at) const {
 
 void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tally& tally) const {
     const double points = static_cast<double>(tally.evaluations);
-    auto q_at = [&](const std::vector<double>& u) {
-        if (!density) return 1.0;
-        PointBuffer at(1, static_cast<int>(u.size()));
-        for (std::size_t d = 0; d < u.size(); ++d) at(0, static_cast<int>(d)) = u[d];
-        std::array<double, 1> q{1};
-        density->pdf(at, q);
-        return q[0];
-    };
-    std::vector<std::vector<double>> slow_densities;
-    for (const SlowShells& slow : look_.slow) {
-        slow_densities.emplace_back();
-        for (const Witness& w : slow.shells) slow_densities.back().push_back(q_at(w.u));
-    }
     std::vector<double> least(tally.standard_error);
     for (std::size_t c = 0; c < tally.value.size(); ++c) {
         const double tolerance = std::max(request.tolerance(c, tally.value[c]), tally.standard_error[c]);
@@ -147,7 +134,8 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
                 // Most witnesses are explained by any density.
                 if (!(unexplained(w.value[c], w.volume, 0x1p-4, points, size_of(tally, c)) > tolerance))
                     continue;
-                const double mass = unexplained(w.value[c], w.volume, q_at(w.u), points, size_of(tally, c));
+                const double mass =
+                    unexplained(w.value[c], w.volume, pdf_at(density, w.u), points, size_of(tally, c));
                 if (mass > worst) worst = mass, where = &w;
             }
         std::array<char, 200> text;
@@ -170,16 +158,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
             least[c] += unresolved;
         }
         if (!tally.statistical) continue;
-        // Several corners add up; what lies closer to an edge contains what lies closer to its corners.
-        std::vector<double> missed_at(static_cast<std::size_t>(evaluator_.dimensions()) + 1, 0.0);
-        double most = 0;
-        const SlowShells* at = nullptr;
-        for (std::size_t i = 0; i < look_.slow.size(); ++i) {
-            const double mass = unreached(look_.slow[i], c, slow_densities[i], points);
-            missed_at[static_cast<std::size_t>(look_.slow[i].codimension())] += mass;
-            if (mass > most) most = mass, at = &look_.slow[i];
-        }
-        const double missed = *std::ranges::max_element(missed_at);
+        const auto [missed, at] = unreached(look_.slow, c, density, points);
         if (at && missed > tolerance) {
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than the points reach", missed,

@@ -22,7 +22,7 @@ constexpr std::array<double, 6> ladder{3, 8, 15, 24, 36, 50};
 constexpr double suspicious = 0.2; // of the inner shells' masses beside the outer ones'
 constexpr double matters = 1e-3;   // of the greatest mass of a shell: a difference between two
 constexpr double outstanding = 16; // times the median of the look
-constexpr std::size_t most_peaks = 3, most_slow = 16, most_corners = 8;
+constexpr std::size_t most_peaks = 3, most_slow = 16, more_corners = 8;
 constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 constexpr std::size_t most_anchors = 16; // of a variable
 
@@ -30,32 +30,37 @@ struct Anchor {
     double u, finest; // exponent of the smallest distance that the coordinate resolves
 };
 
-// A ladder towards a point: u_d = anchor_d + side_d reach_d 2^-k for the variables that move.
+// A ladder towards a point: u_d = anchor_d + side_d reach_d 2^(-rate_d k) for the variables that move.
 struct Path {
     std::vector<Anchor> anchors;
     std::vector<double> side; // 0: the variable does not move
     std::vector<double> reach;
+    std::vector<int> rates = {}; // empty: 1
 
+    int rate(std::size_t d) const { return side[d] == 0 ? 0 : rates.empty() ? 1 : rates[d]; }
+    // Shells at k have a volume of 2^(-k codimension).
     int codimension() const {
-        return static_cast<int>(std::ranges::count_if(side, [](double s) { return s != 0; }));
+        int sum = 0;
+        for (std::size_t d = 0; d < side.size(); ++d) sum += rate(d);
+        return sum;
     }
     double finest() const {
         double least = finest_at_origin;
         for (std::size_t d = 0; d < side.size(); ++d)
-            if (side[d] != 0) least = std::min(least, anchors[d].finest + std::log2(reach[d]));
+            if (side[d] != 0) least = std::min(least, (anchors[d].finest + std::log2(reach[d])) / rate(d));
         return std::min(least, std::max(finest_inside, finest_at_origin / codimension()));
     }
     // Volume of the shell around the anchor; `across`: widths in the variables that do not move.
     double volume(double exponent, const std::vector<double>& across) const {
         double product = 1;
         for (std::size_t d = 0; d < side.size(); ++d)
-            product *= side[d] != 0 ? reach[d] * std::exp2(-exponent) : across[d];
+            product *= side[d] != 0 ? reach[d] * std::exp2(-rate(d) * exponent) : across[d];
         return product;
     }
     Point at(double exponent) const {
         Point u(side.size());
         for (std::size_t d = 0; d < u.size(); ++d)
-            u[d] = std::clamp(anchors[d].u + side[d] * reach[d] * off_grid * std::exp2(-exponent),
+            u[d] = std::clamp(anchors[d].u + side[d] * reach[d] * off_grid * std::exp2(-rate(d) * exponent),
                               std::numeric_limits<double>::min(), 1 - 0x1p-53);
         return u;
     }
@@ -138,20 +143,23 @@ class Look {
         return paths;
     }
 
-    // All variables at once: the same anchor in each, and some with an anchor of its own in each.
+    // All variables at once: the same anchor in each, each corner of up to three variables, and some with an anchor of its
+    // own in each variable.
     std::vector<Path> joint_paths() {
         std::vector<Path> paths;
         std::size_t most = 0;
         for (const auto& anchors : anchors_) most = std::max(most, anchors.size());
-        const std::size_t mixed = n_ <= 3 ? 16 : 8;
+        const std::size_t mixed = n_ <= 3 ? 16 : 8, corners = n_ <= 3 ? std::size_t{1} << n_ : 0;
         for (std::size_t i = 0; i < most + mixed; ++i) {
             Path path;
             for (std::size_t d = 0; d < n_; ++d) {
                 const std::size_t count = anchors_[d].size();
                 const std::size_t which =
                     i < most ? std::min(i, count - 1)
-                             : std::min(count - 1,
-                                        static_cast<std::size_t>(random() * static_cast<double>(count)));
+                    : i < most + corners
+                        ? (i - most) >> d & 1
+                        : std::min(count - 1,
+                                   static_cast<std::size_t>(random() * static_cast<double>(count)));
                 const Anchor anchor = anchors_[d][which];
                 const double side = anchor.u == 0                ? 1
                                     : anchor.u == 1              ? -1
@@ -179,13 +187,27 @@ class Look {
         return paths;
     }
 
-    // Ladders to corners: where one of them is slow, others may be.
+    // Ladders to corners: where one of them is slow, others may be. To the slow ones also those on which one variable
+    // falls with the square of the others or the others with its: x + y^2 has two scales.
     std::vector<Path> corner_paths() {
         std::vector<Path> paths;
-        for (std::size_t i = 0; i < most_corners; ++i) {
+        for (const SlowShells& slow : look_.slow) {
+            if (std::ranges::find(slow.place, SlowShells::free) != slow.place.end()) continue;
+            for (std::size_t one = 0; one < n_; ++one)
+                for (int rate : {1, 2}) {
+                    Path path{{}, {}, std::vector<double>(n_, 1.0), std::vector<int>(n_, 3 - rate)};
+                    path.rates[one] = rate;
+                    for (std::size_t d = 0; d < n_; ++d) {
+                        path.anchors.push_back(anchors_[d][slow.place[d] == 0 ? 0 : 1]);
+                        path.side.push_back(slow.place[d] == 0 ? 1 : -1);
+                    }
+                    if (n_ > 2 || rate == 1) paths.push_back(std::move(path));
+                }
+        }
+        for (std::size_t i = 0; n_ > 3 && i < more_corners; ++i) {
             Path path{{}, {}, std::vector<double>(n_, 1.0)};
             for (std::size_t d = 0; d < n_; ++d) {
-                const bool upper = n_ <= 3 ? i >> d & 1 : random() < 0.5;
+                const bool upper = random() < 0.5;
                 path.anchors.push_back(anchors_[d][upper ? 1 : 0]);
                 path.side.push_back(upper ? -1 : 1);
             }
@@ -371,9 +393,9 @@ class Look {
             for (double k : exponents) {
                 points.emplace_back(n_);
                 for (std::size_t d = 0; d < n_; ++d)
-                    points.back()[d] = path.side[d] == 0
-                                           ? x.view()(0, static_cast<int>(d))
-                                           : -path.side[d] * std::exp2(k) / (off_grid * path.reach[d]);
+                    points.back()[d] = path.side[d] == 0 ? x.view()(0, static_cast<int>(d))
+                                                         : -path.side[d] * std::exp2(path.rate(d) * k) /
+                                                               (off_grid * path.reach[d]);
             }
             const auto rows = raw_.at(points);
             std::vector<double> g;

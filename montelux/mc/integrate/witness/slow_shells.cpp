@@ -1,6 +1,7 @@
 #include "montelux/mc/integrate/witness/slow_shells.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -58,6 +59,33 @@ double unreached(const SlowShells& slow, std::size_t c, std::span<const double> 
     const double fall = mass[count - 1] > 0 ? std::log(mass[count - 2] / mass[count - 1]) / last : 0;
     if (fall > 0 && expected[count - 1] < 1) sum += mass[count - 1] / fall;
     return sum;
+}
+
+Unreached unreached(std::span<const SlowShells> all, std::size_t c, const UnitDensity* density,
+                    double points) {
+    Unreached found;
+    double most = 0;
+    std::vector<double> of_codimension, q;
+    for (const SlowShells& slow : all) {
+        q.clear();
+        for (const Witness& w : slow.shells) q.push_back(pdf_at(density, w.u));
+        const double mass = unreached(slow, c, q, points);
+        of_codimension.resize(std::max(of_codimension.size(), slow.place.size() + 1), 0.0);
+        double& sum = of_codimension[static_cast<std::size_t>(slow.codimension())];
+        sum += mass;
+        found.mass = std::max(found.mass, sum);
+        if (mass > most) most = mass, found.at = &slow;
+    }
+    return found;
+}
+
+double pdf_at(const UnitDensity* density, const std::vector<double>& u) {
+    if (!density) return 1;
+    PointBuffer at(1, static_cast<int>(u.size()));
+    for (std::size_t d = 0; d < u.size(); ++d) at(0, static_cast<int>(d)) = u[d];
+    std::array<double, 1> q{1};
+    density->pdf(at, q);
+    return q[0];
 }
 
 void save(StateWriter& state, const SlowShells& slow) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/state_archive.h"
+#include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/integrate/witness/largest_values.h"
 
 namespace montelux {
@@ -27,6 +28,18 @@ bool fall_slowly(double outer_mass, double inner_mass, double exponents_between,
 // Part of the integral of |g_c| that lies closer than the nearest of `points`, as expected by their density q at the
 // shells. Masses follow a power between two shells, and inside the last one.
 double unreached(const SlowShells& slow, std::size_t c, std::span<const double> q, double points);
+
+// The same of all slow ends together, and the one of them that holds most; null where none holds anything. Several
+// corners add up; what lies closer to an edge contains what lies closer to its corners.
+struct Unreached {
+    double mass = 0;
+    const SlowShells* at = nullptr;
+};
+Unreached unreached(std::span<const SlowShells> all, std::size_t c, const UnitDensity* density,
+                    double points);
+
+// Density of the cube at a point; null: 1 everywhere.
+double pdf_at(const UnitDensity* density, const std::vector<double>& u);
 
 void save(StateWriter& state, const SlowShells& slow);
 void load(StateReader& state, SlowShells& slow);

@@ -74,6 +74,23 @@ TEST(FirstLook, TellsDivergenceAtEndsAndAtInfinity) {
             .divergence.empty());
 }
 
+// Masses of shells whose widths fall at different rates: x + y^2 has two scales.
+TEST(FirstLook, TellsDivergenceAtCornersOfTwoScales) {
+    for (int n : {2, 3})
+        for (int steep = 0; steep < n; ++steep)
+            for (double power : {1.5, 1.4}) {
+                const Integrand f([=](std::span<const double> x) {
+                    double sum = x[static_cast<std::size_t>(steep)];
+                    for (int d = 0; d < n; ++d)
+                        if (d != steep)
+                            sum += x[static_cast<std::size_t>(d)] * x[static_cast<std::size_t>(d)];
+                    return std::pow(sum, -power - 0.5 * (n - 2));
+                });
+                EXPECT_EQ(look_at(f, Domain::unit_cube(n)).divergence.empty(), power < 1.5)
+                    << n << " " << steep << " " << power;
+            }
+}
+
 TEST(FirstLook, SurvivesValuesThatAreNotFinite) {
     const FirstLook none =
         look_at([](double) { return std::numeric_limits<double>::quiet_NaN(); }, Domain::interval(0, 1));
