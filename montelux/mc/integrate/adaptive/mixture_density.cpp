@@ -170,10 +170,13 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
         if (k + static_cast<std::size_t>(newest) >= n) shares_[k] = std::max(shares_[k], step);
         left -= shares_[k];
     }
-    // Step by step: no share falls below zero, and that of the uniform channel stays.
-    for (; left != 0; left -= left > 0 ? step : -step)
-        *std::max_element(shares_.begin() + std::min(map_channel(), channels() - 1), shares_.end()) +=
-            left > 0 ? step : -step;
+    // Step by step: no share falls below zero, and that of the uniform channel stays while another one can give.
+    for (; left != 0; left -= left > 0 ? step : -step) {
+        auto giver =
+            std::max_element(shares_.begin() + std::min(map_channel(), channels() - 1), shares_.end());
+        if (left < 0 && *giver < step) giver = std::ranges::max_element(shares_);
+        *giver += left > 0 ? step : -step;
+    }
 }
 
 MixtureDensity MixtureDensity::widened(double factor) const {

@@ -490,8 +490,15 @@ class Look {
             Witness top = climb(raw_, start, magnitude);
             if (std::ranges::any_of(look_.peaks, [&](const Witness& p) { return belongs(top, p); })) continue;
             measure(raw_, top, magnitude);
-            look_.peaks.push_back(std::move(top));
+            if (!is_rounding(top)) look_.peaks.push_back(std::move(top));
         }
+    }
+
+    // Values that only a few neighbouring numbers have: a pole whose distance is rounded to zero.
+    static bool is_rounding(const Witness& top) {
+        for (std::size_t d = 0; d < top.u.size(); ++d)
+            if (top.extent[d] < 0x1p-48 * top.u[d]) return true;
+        return false;
     }
 
     // Does the value fall along the line from the top of a known peak? Otherwise it is another one.

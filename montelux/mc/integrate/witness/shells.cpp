@@ -15,6 +15,7 @@ constexpr double harmonic = (outer_from + outer_to) / (inner_from + inner_to);
 constexpr double noise = 0.93; // factor for masses that oscillate
 constexpr double steady =
     0.25; // least ratio of the masses of the last third of the inner range and of that before
+constexpr double least_growth = 2;
 constexpr double coarsest = 6; // least exponent of the innermost shells
 
 std::vector<double> exponents(double from, double to) {
@@ -29,14 +30,14 @@ std::vector<double> exponents(double from, double to) {
 double finest_exponent(const Domain& domain, std::size_t d, double u) {
     if (domain.ranges().empty()) return finest_inside;
     const Range range = domain.ranges()[d];
-    const double width = range.upper - range.lower;
-    // At an end the distance itself has all its digits.
-    constexpr double end = 0x1p-60;
-    if (u < end && range.lower == 0) return finest_at_origin;
-    if (!std::isfinite(width)) return finest_inside;
-    const double x = range.lower + width * u;
-    return x == 0 ? finest_inside
-                  : std::clamp(finest_inside + std::log2(width / std::abs(x)), 4.0, finest_inside);
+    const double all = range.upper - range.lower, width = std::isfinite(all) ? all : 1;
+    // Towards the lower end coordinates are denser, and so is x towards zero.
+    const double of_u = -std::log2(std::min(1.0, 2 * u));
+    const bool at_end = u < 0x1p-60;
+    if (!std::isfinite(all) && !at_end) return finest_inside;
+    const double x = at_end ? range.lower : range.lower + width * u;
+    const double of_x = x == 0 ? of_u : std::log2(width / std::abs(x));
+    return std::clamp(finest_inside + std::min(of_u, of_x), 4.0, finest_at_origin);
 }
 
 namespace {
@@ -75,8 +76,13 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     // Infinite, zero or no number, by overflow or rounding or in truth: the shells up to there tell.
     if (rounded)
         return may_be_rounded && masses_diverge_until(values, last_value(values, finest), codimension, false);
+    // Values that no longer grow are those of a narrow peak. Over three shells those of a pole grow eightfold, or more,
+    // but for oscillations.
+    const double last = std::max(g_inner[shells - 1], g_inner[shells - 2]),
+                 earlier = std::max(g_inner[shells - 4], g_inner[shells - 5]);
     // Within the inner range, too: the outer one may lie beyond all that is there.
-    return sum_inner > 0 && sum_inner >= noise * harmonic * sum_outer && innermost >= steady * before;
+    return sum_inner > 0 && last >= least_growth * earlier && sum_inner >= noise * harmonic * sum_outer &&
+           innermost >= steady * before;
 }
 
 } // namespace

@@ -271,6 +271,20 @@ TEST(MixtureDensity, TheBoundaryKeepsAShareThatItDoesNotEarn) {
     }
 }
 
+// Where uniform points are best the boundary's share comes from theirs, not from channels that have none.
+TEST(MixtureDensity, NoShareIsNegative) {
+    const MixtureDensity parts = mixture();
+    const PointBuffer x = uniform_points(2000, 2, 5);
+    const std::vector<double> flat(x.count(), 1.0);
+    for (int step : {1, 4, 8}) {
+        MixtureDensity density(2, {parts.maps().begin(), parts.maps().end()},
+                               {parts.gaussians().begin(), parts.gaussians().end()}, true);
+        density.optimise_shares(x, flat, flat, 4, step);
+        EXPECT_EQ(std::accumulate(density.shares().begin(), density.shares().end(), 0), MixtureDensity::units);
+        for (int share : density.shares()) EXPECT_GE(share, 0) << step;
+    }
+}
+
 TEST(MixtureDensity, WidenedKeepsSharesAndMeans) {
     MixtureDensity density(2, {}, {Gaussian({0.3, 0.4}, {0.02, 0, 0, 0.02})});
     density.set_shares({16, 48});
