@@ -161,8 +161,9 @@ class CubatureEstimator final : public Estimator {
         tally.ready = !searching() && verification_.verified(totals_.value()) && !confirmation_.pending() &&
                       (verification_.recalled(regions_.count()) || at_limit_);
         tally.at_limit = at_limit_;
-        // In one variable halving alone finds every feature of some width.
-        tally.localised = n_ > 1 && verification_.evaluations() > 0 && verification_.blind();
+        // In one variable halving alone finds a feature of some width, but not several.
+        tally.localised = (n_ > 1 || verification_.features() > 1) && verification_.evaluations() > 0 &&
+                          verification_.blind();
         tally.check_evaluations = verification_.evaluations();
         tally.singular = singular_;
         tally.non_finite.merge(verification_.non_finite());
@@ -227,6 +228,7 @@ class CubatureEstimator final : public Estimator {
     }
 
     StepOutcome verify(const StepRequest& request) {
+        verification_.note_features(regions_);
         const std::uint64_t points = verification_.points(regions_, totals_.value(), evaluations_, request);
         if (points == 0) {
             verification_.skip(totals_.value(), totals_.error());
@@ -267,7 +269,12 @@ class CubatureEstimator final : public Estimator {
             verification_.renew();
             return verify(request);
         }
-        at_limit_ = true;
+        if (verification_.is_scattered() && !reached(request) &&
+            verification_.may_grow(verification_.points(regions_, totals_.value(), evaluations_, request))) {
+            verification_.renew();
+            return verify(request);
+        }
+        at_limit_ = !verification_.is_scattered();
         for (std::size_t r = 0; r < regions_.count(); ++r)
             at_limit_ = at_limit_ && regions_.marks(r).exhausted;
         return StepOutcome::finished;

@@ -32,6 +32,9 @@ struct CubatureCheck {
     // large.
     std::vector<double> standard_error;
     std::vector<double> lowest, highest; // values met
+    // In one variable: groups of neighbouring surprises, with others between them; and their mean size.
+    std::size_t groups = 0;
+    std::vector<double> mean_surprise;
     NonFiniteCount non_finite;
 };
 

@@ -22,8 +22,12 @@ constexpr double suspicion = 2.5;            // standard errors beyond which the
 constexpr double significant_errors = 5;     // standard errors between rules and points
 constexpr std::uint64_t most_rounds = 12;
 constexpr std::uint64_t fewest_points = 16;
-constexpr double plateau = 0.1;             // range of the values beside their mean
-constexpr std::uint64_t plateau_points = 4; // times as many points if only a plateau was seen
+constexpr std::size_t fewest_groups = 3; // of surprises, that call for more points
+// Features that are separated by a background of one value, to within a part of the range, in so much of the domain.
+constexpr double flatness = 1e-3, least_background = 0.4;
+constexpr std::uint64_t most_points = 1 << 20; // for them
+constexpr double plateau = 0.1;                // range of the values beside their mean
+constexpr std::uint64_t plateau_points = 4;    // times as many points if only a plateau was seen
 // Points for an integrand with jumps, times the relative target: a part that holds four targets of the volume is then
 // overlooked with a probability of e^-4.8; at most this many times as many.
 constexpr double points_per_target = 2;
@@ -131,13 +135,13 @@ CubatureVerification::CubatureVerification(const Problem& problem, std::uint64_t
     : problem_(problem), points_(points), residual_(problem.evaluator.components(), problem.full_covariance),
       lowest_(static_cast<std::size_t>(problem.evaluator.components()), infinity),
       highest_(lowest_.size(), -infinity), next_(4 * points), shown_(lowest_.size(), 0.0),
-      claimed_(lowest_.size(), 0.0), drift_(lowest_.size(), 1.0) {}
+      claimed_(lowest_.size(), 0.0), drift_(lowest_.size(), 1.0), scattered_(lowest_.size(), 0.0) {}
 
 bool CubatureVerification::verified(std::span<const double> value) const {
     if (points_ == 0) return true;
     if (checked_value_.empty() || !witnesses_.empty()) return false;
     if (!warning_.empty()) return true; // no further check would help
-    if (disagrees_) return false;
+    if (disagrees_ || !enough_points_) return false;
     for (std::size_t c = 0; c < value.size(); ++c)
         if (!(std::abs(value[c] - checked_value_[c]) <= checked_error_[c])) return false;
     return true;
@@ -191,6 +195,13 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
                     wanted, static_cast<std::uint64_t>(std::min(
                                 points_per_target / target, static_cast<double>(most_of_jumps * points_))));
         }
+    if (is_scattered()) {
+        double needed = request.targeted() ? 0 : static_cast<double>(evaluations);
+        for (std::size_t c = 0; request.targeted() && c < value.size(); ++c)
+            needed = std::max(needed, 2 * scattered_[c] / request.tolerance(c, value[c]));
+        wanted = std::max(wanted, static_cast<std::uint64_t>(
+                                      std::ceil(std::min(needed, static_cast<double>(most_points)))));
+    }
     const std::uint64_t all = evaluations + request.max_evaluations;
     const std::uint64_t points =
         std::min({wanted, all / (request.targeted() ? 2 : 8), request.max_evaluations});
@@ -212,6 +223,39 @@ std::vector<double> CubatureVerification::tolerances(const CubatureRegions& regi
         if (request.targeted()) tolerance[c] = std::max(tolerance[c], request.tolerance(c, value[c]));
     }
     return tolerance;
+}
+
+void CubatureVerification::note_features(const CubatureRegions& regions) {
+    if (problem_.evaluator.dimensions() != 1) return;
+    std::vector<std::size_t> order(regions.count());
+    const auto mean = [&](std::size_t r, std::size_t c) { return regions.value(r)[c] / regions.volume(r); };
+    for (std::size_t c = 0; c < lowest_.size(); ++c) {
+        // The background: the median of the means, by volume.
+        std::iota(order.begin(), order.end(), std::size_t{0});
+        std::ranges::sort(order, {}, [&](std::size_t r) { return mean(r, c); });
+        double volume = 0, low = infinity, high = -infinity, background = 0;
+        for (std::size_t r : order) {
+            if (volume < 0.5) background = mean(r, c);
+            volume += regions.volume(r);
+            low = std::min(low, regions.lowest(r)[c]);
+            high = std::max(high, regions.highest(r)[c]);
+        }
+        std::ranges::sort(order, {}, [&](std::size_t r) { return regions.centre(r)[0]; });
+        double height = 0, flat = 0;
+        std::size_t features = 0;
+        bool inside = false;
+        for (std::size_t r : order) {
+            const double above = std::abs(mean(r, c) - background);
+            const bool feature = above > flatness * (high - low);
+            if (!feature) flat += regions.volume(r);
+            if (feature && !inside) ++features;
+            if (feature) height += above * regions.volume(r);
+            inside = feature;
+        }
+        if (flat < least_background) continue;
+        features_ = std::max(features_, features);
+        if (features >= fewest_groups) scattered_[c] = height / std::max(1 - flat, 1e-300);
+    }
 }
 
 std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<const double> value,
@@ -243,6 +287,12 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
         // Once wrong, rules claim no smaller error than the points' own.
         slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
     }
+    for (std::size_t c = 0; check->groups >= fewest_groups && c < value.size(); ++c)
+        scattered_[c] = std::max(scattered_[c], check->mean_surprise[c]);
+    checked_points_ = points;
+    enough_points_ = true;
+    for (std::size_t c = 0; request.targeted() && c < value.size(); ++c)
+        enough_points_ = enough_points_ && 2 * overlooked(c) <= 1.01 * request.tolerance(c, value[c]);
     points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);
     witnesses_ = std::move(check->surprises);
     for (const CubatureWitness& w : witnesses_)
@@ -258,6 +308,11 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     if (!unsurprised_ && rounds_ >= most_rounds) {
         witnesses_.clear();
         warning_ = "random points keep disagreeing with the rules (" + std::to_string(rounds_) + " checks)";
+        return points + climbed;
+    }
+    if (!enough_points_ && points >= most_points) {
+        witnesses_.clear();
+        warning_ = "separate features are too many, or too narrow, for a check by random points";
         return points + climbed;
     }
     std::vector<std::size_t> of_regions;
@@ -431,6 +486,10 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(shown_);
     state.put(claimed_);
     state.put(drift_);
+    state.put(static_cast<std::uint64_t>(features_));
+    state.put(scattered_);
+    state.put(checked_points_);
+    state.put(enough_points_);
     state.put(unsurprised_);
     state.put(surprised_);
     state.put(disagrees_);
@@ -478,6 +537,11 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     fits(claimed_, m);
     drift_ = state.get_doubles();
     fits(drift_, m);
+    features_ = state.get_word();
+    scattered_ = state.get_doubles();
+    fits(scattered_, m);
+    checked_points_ = state.get_word();
+    enough_points_ = state.get<bool>();
     unsurprised_ = state.get<bool>();
     surprised_ = state.get<int>() != 0;
     if (!slack_.empty()) fits(slack_, m);

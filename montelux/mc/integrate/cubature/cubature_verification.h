@@ -31,6 +31,8 @@ class CubatureVerification {
     // Points of a check that is due; 0 where the evaluations left are too few for one.
     std::uint64_t points(const CubatureRegions& regions, std::span<const double> value,
                          std::uint64_t evaluations, const StepRequest& request) const;
+    // Notes whether the integrand is flat but for separate features. Before a check.
+    void note_features(const CubatureRegions& regions);
     // Makes a check, and adds the witnesses' errors to their regions. Returns the evaluations made; empty,
     // and nothing changed, when cancelled.
     std::uint64_t run(CubatureRegions& regions, std::span<const double> value, std::span<const double> error,
@@ -69,10 +71,19 @@ class CubatureVerification {
     // Did so few points fall into the part that holds half of the integral, by the rules, that other such
     // parts may have been missed?
     bool blind() const { return points_in_bulk_ < enough_in_bulk; }
+    // Features of one variable that are separated by a flat background.
+    std::size_t features() const { return features_; }
     // Additional error of a component if points have shown that the rules may be wrong.
     double slack(std::size_t component) const {
-        return std::max({slack_.empty() ? 0.0 : slack_[component], shown_[component], claimed_[component]});
+        return std::max({slack_.empty() ? 0.0 : slack_[component], shown_[component], claimed_[component],
+                         enough_points_ ? overlooked(component) : 0.0});
     }
+    // Are there several separate features? Then there may be more of them, which further points find.
+    bool is_scattered() const {
+        return std::ranges::any_of(scattered_, [](double size) { return size > 0; });
+    }
+    // Would a check have many more points than the last one?
+    bool may_grow(std::uint64_t points) const { return points >= 2 * checked_points_; }
     // By which a component's errors must grow: the value moved by more than they between two checks that found nothing.
     double drift(std::size_t component) const { return drift_[component]; }
     // Normally empty.
@@ -92,6 +103,10 @@ class CubatureVerification {
     void add_differences(CubatureRegions& regions, const CubatureCheck& check, std::size_t component);
     void add_errors(CubatureRegions& regions, std::span<const std::size_t> of_regions);
     void note_drift(std::span<const double> value);
+    // What one more feature that the last check met nowhere would hold.
+    double overlooked(std::size_t component) const {
+        return checked_points_ > 0 ? scattered_[component] / static_cast<double>(checked_points_) : 0;
+    }
 
     Problem problem_;
     std::uint64_t points_;
@@ -109,8 +124,12 @@ class CubatureVerification {
     // Least errors: after surprises; where rules were wrong or do not converge fast; of what was claimed and confirmed.
     std::vector<double> slack_, shown_, claimed_;
     std::vector<double> drift_;
-    bool unsurprised_ = false; // since before the last check
-    bool disagrees_ = false;   // the mean of the points, in the last check
+    std::size_t features_ = 0;
+    std::vector<double> scattered_; // mean size of several separate features or surprises; else 0
+    std::uint64_t checked_points_ = 0;
+    bool enough_points_ = true; // for features of that size
+    bool unsurprised_ = false;  // since before the last check
+    bool disagrees_ = false;    // the mean of the points, in the last check
     std::string warning_;
 };
 

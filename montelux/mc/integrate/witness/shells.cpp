@@ -33,7 +33,7 @@ double finest_exponent(const Domain& domain, std::size_t d, double u) {
     const double all = range.upper - range.lower, width = std::isfinite(all) ? all : 1;
     // Towards the lower end coordinates are denser, and so is x towards zero.
     const double of_u = -std::log2(std::min(1.0, 2 * u));
-    const bool at_end = u < 0x1p-60;
+    const bool at_end = u < 0x1p-60 && std::isfinite(range.lower);
     if (!std::isfinite(all) && !at_end) return finest_inside;
     const double x = at_end ? range.lower : range.lower + width * u;
     const double of_x = x == 0 ? of_u : std::log2(width / std::abs(x));
