@@ -13,7 +13,8 @@
 namespace montelux {
 namespace {
 
-constexpr double far_above = 32;                   // times the mean of |g|: a value that is examined
+constexpr double far_above = 32; // times the mean of |g|: a value that is examined
+constexpr std::size_t most_poles = 32;
 constexpr std::uint64_t most_of_examination = 600; // evaluations, for each variable and one more
 
 // Integral of |g|, or what is known of it.
@@ -90,6 +91,7 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             const PoleReport pole = search_pole(raw, witness, c);
             known = {pole.u, value, pole.unresolved};
             if (pole.diverges && !near_infinity(pole.u) && divergence_.empty()) divergence_ = place(pole.u);
+            if (!pole.slow.shells.empty() && look_.slow.size() < most_poles) look_.slow.push_back(pole.slow);
             evaluations_ += raw.evaluations();
         }
 }

@@ -245,7 +245,7 @@ class Look {
                         look_.divergence = place_of(paths[p]);
                         return;
                     }
-                    if (n_ == 1) note_unresolved(paths[p], rows, p * ladder.size(), c);
+                    if (paths[p].codimension() == 1) note_unresolved(paths[p], rows, p * ladder.size(), c);
                 }
         for (std::size_t p = 0; p < walked; ++p) note_slow(paths[p], rows, p * ladder.size());
     }

@@ -83,6 +83,24 @@ class PoleSearch {
         return sum;
     }
 
+    // Shells around a point, along one ray.
+    SlowShells shells_around(const Point& u) {
+        constexpr std::array exponents{3.0, 8.0, 15.0, 24.0, 36.0, finest_inside};
+        SlowShells slow{u, {}, {exponents.begin(), exponents.end()}};
+        const std::vector<Point> points = rays(u, exponents, 1);
+        const auto rows = raw_(points);
+        double width = 1;
+        for (double c : u) width *= 2 * std::min(c, 1 - c);
+        const double n = static_cast<double>(u.size());
+        for (std::size_t i = 0; i < points.size(); ++i)
+            slow.shells.push_back({points[i], rows[i], width * std::exp2(-n * exponents[i])});
+        const auto mass = [&](std::size_t i) {
+            return std::abs(slow.shells[i].value[component_]) * slow.shells[i].volume;
+        };
+        if (!fall_slowly(mass(1), mass(4), exponents[4] - exponents[1], slow.codimension())) return {};
+        return slow;
+    }
+
   private:
     // Exponent of the smallest distance to a side, as a part of what lies there, that doubles resolve.
     double finest_of_side(const Point& u, std::size_t d, double side) const {
@@ -154,6 +172,7 @@ PoleReport search_pole(RawValues& raw, const Witness& from, std::size_t componen
         search.follow(beside, d);
         report.diverges = search.line_diverges(beside, d);
     }
+    if (!report.diverges && !at_end) report.slow = search.shells_around(report.u);
     return report;
 }
 

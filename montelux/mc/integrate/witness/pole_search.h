@@ -4,6 +4,7 @@
 #include <string>
 
 #include "montelux/mc/integrate/witness/peak.h"
+#include "montelux/mc/integrate/witness/slow_shells.h"
 
 namespace montelux {
 
@@ -12,6 +13,8 @@ struct PoleReport {
     // Integral of |g| over the points that doubles do not tell from the pole, in one variable; 0 without a pole.
     double unresolved = 0;
     std::vector<double> u; // where
+    // In several variables, where masses fall slowly towards the pole; no shells elsewhere.
+    SlowShells slow;
 };
 
 // Follows |g_component| from a witness to the greatest value along each variable, and compares dyadic shells around

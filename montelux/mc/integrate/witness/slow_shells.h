@@ -11,11 +11,11 @@
 
 namespace montelux {
 
-// Values on the way to a face, an edge or a corner, from outside to inside. Masses of its dyadic shells fall so slowly that
-// uniform points have an infinite variance there: |g| ~ r^-a, where 2 a is at least the codimension.
+// Values on the way to a face, an edge, a corner or a pole, from outside to inside. Masses of its dyadic shells fall so
+// slowly that uniform points have an infinite variance there: |g| ~ r^-a, where 2 a is at least the codimension.
 struct SlowShells {
-    static constexpr double free = 0.5;
-    std::vector<double> place;     // of the face, edge or corner: 0, 1 or `free`
+    static constexpr double free = -1;
+    std::vector<double> place;     // coordinates, or `free`
     std::vector<Witness> shells;   // with their volumes, of 2^(-codimension k) each
     std::vector<double> exponents; // k
 
