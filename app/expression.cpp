@@ -143,14 +143,26 @@ std::string unknown_name(const std::string& name, bool called, bool word, const 
     }
 }
 
-// Nothing is assigned and no formula is a list; muParser would take both.
+// Nothing is assigned, no formula is a list and no comparisons are chained; muParser would take them all.
 void check_form(const std::string& text, const std::string& option) {
     int depth = 0;
+    std::vector<char> compared{0}; // since the last && or the like; one for each open bracket
     for (std::size_t i = 0; i < text.size(); ++i) {
         const char c = text[i], before = i > 0 ? text[i - 1] : ' ',
                    after = i + 1 < text.size() ? text[i + 1] : ' ';
-        if (c == '(') ++depth;
-        if (c == ')') --depth;
+        if (c == '(') ++depth, compared.push_back(0);
+        if (c == ')') {
+            --depth;
+            if (compared.size() > 1) compared.pop_back();
+        }
+        if (c == '&' || c == '|' || c == '?' || c == ':' || c == ',') compared.back() = 0;
+        if (c == '<' || c == '>' || ((c == '=' || c == '!') && after == '=' && before != '=')) {
+            if (compared.back())
+                refuse(option, text, i, "comparisons are not chained; write 0<x && x<1 for 0<x<1");
+            compared.back() = 1;
+            if (after == '=') ++i;
+            continue;
+        }
         const bool compares =
             after == '=' || before == '=' || before == '<' || before == '>' || before == '!';
         if (c == '*' && after == '*')

@@ -251,6 +251,8 @@ expect 2 "the formula ends too early" integrate 'x+' --over x=0:1
 expect 2 "the formula is empty" integrate '' --over x=0:1
 expect 2 "products need a '*'" integrate '3x' --over x=0:1
 expect 2 "'==' compares" integrate 'x=3' --over x=0:1
+expect 2 "comparisons are not chained" integrate '0<x<0.5' --over x=-1:1
+expect 0 "1.5000" integrate '(0<x)==(x<=0.5) && x!=2 || max(x<0,x>1)>0' --over x=-1:1 --evaluations 1e4
 expect 2 "an argument of its own" integrate 'x,x' --over x=0:1
 expect 2 "gets too many arguments" integrate 'sin(x,x)' --over x=0:1
 expect 2 "there is no variable 'y'" integrate x --over x=0:y

@@ -25,7 +25,7 @@ std::string to_string(const IntegrationResult& result) {
         text += to_string(one) + "\n";
     }
     text += std::to_string(result.evaluations) + " evaluations by " + result.method;
-    if (!result.reason.empty()) text += " (" + result.reason + ")";
+    if (!result.reason.empty() && result.stop != StopReason::diverges) text += " (" + result.reason + ")";
     switch (result.stop) {
     case StopReason::error_target:
         text += ", error target reached";

@@ -76,13 +76,13 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     // Infinite, zero or no number, by overflow or rounding or in truth: the shells up to there tell.
     if (rounded)
         return may_be_rounded && masses_diverge_until(values, last_value(values, finest), codimension, false);
-    // Values that no longer grow are those of a narrow peak. Over three shells those of a pole grow eightfold, or more,
+    // Values that no longer grow are those of a narrow peak. Over three shells those of a pole grow by 8^codimension or more,
     // but for oscillations.
     const double last = std::max(g_inner[shells - 1], g_inner[shells - 2]),
                  earlier = std::max(g_inner[shells - 4], g_inner[shells - 5]);
     // Within the inner range, too: the outer one may lie beyond all that is there.
-    return sum_inner > 0 && last >= least_growth * earlier && sum_inner >= noise * harmonic * sum_outer &&
-           innermost >= steady * before;
+    return sum_inner > 0 && last >= least_growth * std::exp2(2 * (codimension - 1)) * earlier &&
+           sum_inner >= noise * harmonic * sum_outer && innermost >= steady * before;
 }
 
 } // namespace

@@ -123,6 +123,29 @@ TEST(Evidence, DivergentIntegralsAreCalledSo) {
     EXPECT_EQ(integrate(line, Domain::unit_cube(2), Method(), budget).stop, StopReason::diverges);
 }
 
+// The part of r^-1.8 around a point of the plane that lies closer than the points reach.
+TEST(Evidence, PolesInsideOfSeveralVariablesRaiseTheError) {
+    const auto f = [](std::span<const double> x) {
+        return std::pow((x[0] - 0.3) * (x[0] - 0.3) + (x[1] - 0.7) * (x[1] - 0.7), -0.9);
+    };
+    // In polar coordinates; the square's distance from the pole integrated over the angle by 4000 midpoints.
+    double exact = 0;
+    for (int i = 0; i < 4000; ++i) {
+        const double angle = 2 * std::numbers::pi * (i + 0.5) / 4000, c = std::cos(angle),
+                     s = std::sin(angle);
+        const double reach = std::min((c > 0 ? 0.7 : 0.3) / std::abs(c), (s > 0 ? 0.3 : 0.7) / std::abs(s));
+        exact += 2 * std::numbers::pi / 4000 * std::pow(reach, 0.2) / 0.2;
+    }
+    for (const char* name : {"basic", "quasi", "vegas", "adaptive"})
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+            const IntegrationResult r =
+                integrate(f, Domain::unit_cube(2), Method::named(name),
+                          {.relative_error = 1e-3, .evaluations = 60'000}, {.seed = seed, .threads = 1});
+            EXPECT_LT(std::abs(r.value[0] - exact), 4 * r.standard_error[0])
+                << name << " " << seed << ": " << to_string(r);
+        }
+}
+
 TEST(Evidence, RelativeErrorsOfVectorsWithZeros) {
     const Integrand moments = Integrand::vector_valued(3, [](std::span<const double> x, std::span<double> y) {
         const double g = std::exp(-x[0] * x[0] - x[1] * x[1]);

@@ -74,6 +74,23 @@ TEST(FirstLook, TellsDivergenceAtEndsAndAtInfinity) {
             .divergence.empty());
 }
 
+// Ends that are close to zero beside the width of the range, and narrow peaks far from zero.
+TEST(FirstLook, NoDivergenceWhereValuesEnd) {
+    const auto inverse = [](double x) { return 1 / x; };
+    for (const Domain& domain :
+         {Domain::interval(1e-15, 1), Domain::interval(1e-30, 1), Domain::interval(1, 1e15)})
+        EXPECT_TRUE(look_at(inverse, domain).divergence.empty());
+    EXPECT_TRUE(look_at([](double x) { return 1 / (x + 1e-14); }, Domain::interval(0, 1), {1e-14})
+                    .divergence.empty());
+    EXPECT_TRUE(look_at([](double x) { return std::exp(-(x - 1e8) * (x - 1e8) / 2e6); },
+                        Domain::interval(-infinity, infinity), {1e8})
+                    .divergence.empty());
+    EXPECT_EQ(look_at([](double x) { return std::abs(x) < 1000 ? 1.0 : 0.0; },
+                      Domain::interval(-infinity, infinity), {1000})
+                  .divergence,
+              "");
+}
+
 // Masses of shells whose widths fall at different rates: x + y^2 has two scales.
 TEST(FirstLook, TellsDivergenceAtCornersOfTwoScales) {
     for (int n : {2, 3})

@@ -47,6 +47,18 @@ TEST(Shells, RoundingDoesNotDecide) {
     EXPECT_FALSE(masses_diverge(of([](double r) { return r < 1e-9 ? 1.0 : 0.0; }), 46, 1));
 }
 
+// A peak a few octaves wider than the finest shell: masses grow up to its width, and no pole's values stay as they are.
+TEST(Shells, NarrowPeaksAreNoPoles) {
+    for (double width : {0x1p-36, 0x1p-40, 0x1p-43})
+        for (int codimension : {1, 2}) {
+            EXPECT_FALSE(masses_diverge(of([=](double r) { return std::exp(-r * r / (width * width)); }), 46,
+                                        codimension));
+            EXPECT_FALSE(
+                masses_diverge(of([=](double r) { return 1 / (r * r + width * width); }), 46, codimension))
+                << width;
+        }
+}
+
 TEST(Shells, DistancesStayAboveTheSpacingOfDoubles) {
     const Domain unit = Domain::interval(0, 1), far = Domain::interval(1e6, 1e6 + 1),
                  shifted = Domain::interval(1, 2);
