@@ -24,6 +24,13 @@ double size_of(const Tally& tally, std::size_t c) {
                      std::isfinite(tally.standard_error[c]) ? tally.standard_error[c] : 0.0});
 }
 
+// Is a point within the half height of a peak?
+bool lies_within(const Witness& peak, const std::vector<double>& u) {
+    for (std::size_t d = 0; d < u.size(); ++d)
+        if (std::abs(u[d] - peak.u[d]) > peak.extent[d]) return false;
+    return true;
+}
+
 template <typename T>
 void save_all(StateWriter& state, const std::vector<T>& all) {
     state.put(static_cast<std::uint64_t>(all.size()));
@@ -133,6 +140,10 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         for (const auto* all : {&look_.peaks, &look_.witnesses})
             for (const Witness& w : *all) {
                 if (!tally.statistical) break; // rules are compared with every witness
+                if (all == &look_.witnesses && std::ranges::any_of(look_.peaks, [&](const Witness& peak) {
+                        return lies_within(peak, w.u);
+                    }))
+                    continue; // the peak speaks for it
                 // Most witnesses are explained by any density.
                 if (!(unexplained(w.value[c], w.volume, 0x1p-4, points, size_of(tally, c)) > tolerance))
                     continue;
