@@ -323,10 +323,11 @@ bool DensityTrainer::fit(const std::function<bool()>& stop) {
         gaussians = gaussians.empty() ? scattered_gaussians(all.x, weights) : split_gaussians(gaussians);
     }
     if (!gaussians.empty() && !fit_gaussians(gaussians, all.x, weights, em_steps, stop)) return false;
+    if (stop()) return false;
     for (Gaussian& g : gaussians) g = g.widened(safe_width); // heavier tails cost little, missing tails much
     MixtureDensity density_before = std::move(density_);
     density_ = MixtureDensity(dimensions, maps, gaussians, boundary);
-    density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_);
+    density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_, 0, stop);
     std::vector<double> ratios(all.h.size());
     auto compare = [&] {
         density_.pdf(all.x, ratios);
@@ -366,11 +367,12 @@ bool DensityTrainer::fit(const std::function<bool()>& stop) {
             gaussians.insert(gaussians.end(), added.begin(), added.end());
             density_ =
                 MixtureDensity(dimensions, std::move(maps), std::move(gaussians), density_.has_boundary());
-            density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_, newest);
+            density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_, newest, stop);
             compare();
             uncovered_share_ = uncovered();
         }
     }
+    if (stop()) return false;
     remember(all, ratios);
     return true;
 }

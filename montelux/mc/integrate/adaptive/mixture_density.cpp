@@ -118,7 +118,8 @@ void MixtureDensity::pdf(const PointBatch& x, std::span<double> density) const {
 }
 
 void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double> h,
-                                     std::span<const double> p, int uniform_units, int step, int newest) {
+                                     std::span<const double> p, int uniform_units, int step, int newest,
+                                     const std::function<bool()>& stop) {
     const auto n = static_cast<std::size_t>(channels());
     if (n == 1) return;
     std::vector<std::vector<double>> q(n, std::vector<double>(x.count()));
@@ -134,7 +135,7 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
         const double sum = std::accumulate(a.begin(), a.end(), 0.0);
         for (double& v : a) v /= sum;
     };
-    for (int iteration = 0; iteration < 40; ++iteration) {
+    for (int iteration = 0; iteration < 40 && !(stop && stop()); ++iteration) {
         std::ranges::fill(moment, 0.0);
         for (std::size_t first = 0; first < x.count(); first += block_points) {
             const std::size_t count = std::min(block_points, x.count() - first);
