@@ -330,7 +330,7 @@ TEST(Auto, RulesAreNotGivenUpForWhatSamplesDoNotReach) {
         [](std::span<const double> x) { return std::pow(x[0] * x[0] + x[1] * x[1], -0.9); },
         Domain::unit_cube(2),
         {8.0303847957109548}};
-    for (std::uint64_t seed = 1; seed <= 6; ++seed) {
+    for (std::uint64_t seed = 1; seed <= 3; ++seed) {
         const IntegrationResult r = run(pole, {.relative_error = 1e-2, .evaluations = 1'000'000}, seed);
         EXPECT_EQ(r.method, "cubature") << r;
         EXPECT_LT(std::abs(r.value[0] - pole.truth[0]), 3 * r.standard_error[0]) << r;

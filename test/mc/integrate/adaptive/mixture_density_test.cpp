@@ -280,7 +280,8 @@ TEST(MixtureDensity, NoShareIsNegative) {
         MixtureDensity density(2, {parts.maps().begin(), parts.maps().end()},
                                {parts.gaussians().begin(), parts.gaussians().end()}, true);
         density.optimise_shares(x, flat, flat, 4, step);
-        EXPECT_EQ(std::accumulate(density.shares().begin(), density.shares().end(), 0), MixtureDensity::units);
+        EXPECT_EQ(std::accumulate(density.shares().begin(), density.shares().end(), 0),
+                  MixtureDensity::units);
         for (int share : density.shares()) EXPECT_GE(share, 0) << step;
     }
 }

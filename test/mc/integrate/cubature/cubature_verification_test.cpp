@@ -116,8 +116,10 @@ TEST(CubatureVerification, JumpsAskForMorePoints) {
 // Around a singular point of two scales halving along one axis at a time moves the value by a small part of its error
 // only, and null rules see even less.
 TEST(CubatureVerification, ErrorsGrowWhereTheValueDriftsFromCheckToCheck) {
-    const Integrand f([](std::span<const double> x) { return 1 / (x[0] * x[0] + x[1]); });
-    const double exact = std::numbers::ln2 + std::numbers::pi / 2;
+    const Integrand f([](std::span<const double> x) { return std::pow(x[0] + x[1] * x[1] * x[1], -0.9); });
+    // 10 (1 + y^3)^0.1 - 10 y^0.3 after the first integration, by midpoints.
+    double exact = -10 / 1.3;
+    for (int i = 0; i < 10'000; ++i) exact += 1e-3 * std::pow(1 + std::pow((i + 0.5) / 10'000, 3), 0.1);
     for (double target : {1e-3, 1e-4, 1e-5})
         for (std::uint64_t seed = 1; seed <= 4; ++seed) {
             const IntegrationResult r = integrate(f, Domain::unit_cube(2), Cubature{},
@@ -134,7 +136,7 @@ TEST(CubatureVerification, SeparateFeaturesCallForMorePoints) {
     int missed = 0;
     for (const Train& train : {Train{0.05, 0.0025, 1}, Train{0.02, 0.001, 1}, Train{7, 0.5, 364}})
         for (double target : {1e-2, 1e-3})
-            for (std::uint64_t seed = 0; seed < 10; ++seed) {
+            for (std::uint64_t seed = 0; seed < 4; ++seed) {
                 const Integrand f(
                     [=](double t) { return std::fmod(t, train.period) < train.width ? 1.0 : 0.0; });
                 const double exact = train.width * std::round(train.end / train.period);
@@ -146,8 +148,8 @@ TEST(CubatureVerification, SeparateFeaturesCallForMorePoints) {
                               std::abs(r.value[0] - exact) > 4 * r.standard_error[0];
                 }
             }
-    // 99 of 120 without.
-    EXPECT_LE(missed, 3);
+    // Nearly all of 48 without.
+    EXPECT_LE(missed, 2);
     // One peak, found by the look, costs as little as before.
     const IntegrationResult peak =
         integrate([](double x) { return std::exp(-1e4 * x * x); }, Domain::interval(-1, 1), Cubature{},
