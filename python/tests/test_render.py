@@ -327,20 +327,25 @@ signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = montelux.parse(sys.stdin.read())
 scene.film.resolution = 2400, 1800
 scene.integrator.method = "auto"
-begin = time.monotonic()
+begin = time.process_time()
+whole = scene.render(spp=1 << 24)  # goes on after the pilot
+print(time.process_time() - begin)
+whole.stop()
+begin = time.process_time()
 threading.Timer(0.5, os.kill, (os.getpid(), signal.SIGINT)).start()
 try:
     scene.render(spp=1 << 24)
 except KeyboardInterrupt:
-    print(time.monotonic() - begin)
+    print(time.process_time() - begin)
 """
 
 
-def test_ctrl_c_ends_a_pilot():  # which would take many seconds
+def test_ctrl_c_ends_a_pilot():
     done = subprocess.run(
         [sys.executable, "-c", INTERRUPTED_PILOT], input=TEXT, capture_output=True, text=True, timeout=120
     )
-    assert done.stderr == "" and float(done.stdout) < 4
+    whole, interrupted = map(float, done.stdout.split())
+    assert done.stderr == "" and interrupted < 0.6 * whole, (whole, interrupted)
 
 
 def test_an_integrator_is_chosen_by_a_pilot(scene):
