@@ -145,30 +145,24 @@ std::string unknown_name(const std::string& name, bool called, bool word, const 
 
 // Nothing is assigned, no formula is a list and no comparisons are chained; muParser would take them all.
 void check_form(const std::string& text, const std::string& option) {
-    int depth = 0;
-    std::vector<char> compared{0}; // since the last && or the like; one for each open bracket
+    std::vector<char> compared{0}; // since the last && or the like: in the text, and in each open bracket
     for (std::size_t i = 0; i < text.size(); ++i) {
-        const char c = text[i], before = i > 0 ? text[i - 1] : ' ',
-                   after = i + 1 < text.size() ? text[i + 1] : ' ';
-        if (c == '(') ++depth, compared.push_back(0);
-        if (c == ')') {
-            --depth;
-            if (compared.size() > 1) compared.pop_back();
-        }
+        const char c = text[i], after = i + 1 < text.size() ? text[i + 1] : ' ';
+        const bool two = after == '=';
+        if (c == '(') compared.push_back(0);
+        if (c == ')' && compared.size() > 1) compared.pop_back();
         if (c == '&' || c == '|' || c == '?' || c == ':' || c == ',') compared.back() = 0;
-        if (c == '<' || c == '>' || ((c == '=' || c == '!') && after == '=' && before != '=')) {
+        if (c == '<' || c == '>' || (two && (c == '=' || c == '!'))) {
             if (compared.back())
                 refuse(option, text, i, "comparisons are not chained; write 0<x && x<1 for 0<x<1");
             compared.back() = 1;
-            if (after == '=') ++i;
+            if (two) ++i;
             continue;
         }
-        const bool compares =
-            after == '=' || before == '=' || before == '<' || before == '>' || before == '!';
         if (c == '*' && after == '*')
             refuse(option, text, i, "'**' is not expected here; powers are written x^2");
-        if (c == '=' && !compares) refuse(option, text, i, "'=' is not expected here; '==' compares");
-        if (c == ',' && depth == 0)
+        if (c == '=') refuse(option, text, i, "'=' is not expected here; '==' compares");
+        if (c == ',' && compared.size() == 1)
             refuse(option, text, i, "',' is not expected here; each component is an argument of its own");
         if (c == '"') refuse(option, text, i, "texts are not expected in a formula");
     }

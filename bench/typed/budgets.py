@@ -3,10 +3,10 @@
 
     bench/typed/budgets.py MONTELUX [--integrals 30] [--seeds 20] [--evaluations 1e4,1e5,1e6] [--times 0.3,1,3]
 
-Takes every so many of the formulas of formulas.tsv. For each method it prints the root mean squared relative error after
-each budget, and names integrals whose error rises from one budget to the next by more than chance: where a rank test of
-the errors (Mann and Whitney 1947) or their mean squares differ by more than four of their own errors. After a time, the
-ratio in brackets is the error there over that of runs with as many evaluations as each of them made.
+Takes every so many of the formulas of formulas.tsv. For each method it prints the root mean squared relative error
+after each budget, and names integrals whose error rises from one budget to the next by more than chance: where a
+rank test of the errors (Mann and Whitney 1947) or their mean squares differ by more than four of their own errors.
+After a time, the ratio in brackets is the error there over that of runs with as many evaluations as each of them made.
 """
 
 from __future__ import annotations
@@ -85,7 +85,10 @@ def main() -> int:
                     if budget[0] != "--time" or any(not r.result for r in runs):
                         continue
                     again = [
-                        pool.submit(run, options.program, case, method, "", seed, ["--evaluations", str(r.result["evaluations"])])
+                        pool.submit(
+                            run, options.program, case, method, "", seed,
+                            ["--evaluations", str(r.result["evaluations"])],
+                        )
                         for seed, r in enumerate(runs)
                     ]
                     same = root_mean_square(errors([job.result() for job in again]))

@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """Integrals as people type them, through the program: which results claim their target and are wrong?
 
-    bench/typed/typed_integrals.py MONTELUX [--methods auto,quasi] [--targets 1e-2,1e-3,1e-4] [--seeds 4] [--families wide]
+    bench/typed/typed_integrals.py MONTELUX [--methods auto,quasi] [--targets 1e-2,1e-3,1e-4] [--seeds 4]
+                                            [--families wide]
 
 Reads formulas.tsv (integrals with known values) and convergence.tsv (divergent and slowly convergent ones), both
 beside this file. A run is silently wrong if it exits with code 0 although a component is more than four of its errors

@@ -201,13 +201,13 @@ class AutoEstimator final : public Estimator {
     Agreement agreement(const StepRequest& request) const {
         const Tally rule = cubature_->tally(), sampled = sampling_->tally();
         const std::shared_ptr<const UnitDensity> density = sampling_->density();
+        std::vector<Unreached> missed(rule.value.size());
+        if (look_)
+            missed = unreached(look_->slow, missed.size(), density.get(),
+                               static_cast<double>(sampled.evaluations));
         bool agree = true;
         for (std::size_t c = 0; c < rule.value.size(); ++c) {
-            const double missed =
-                look_
-                    ? unreached(look_->slow, c, density.get(), static_cast<double>(sampled.evaluations)).mass
-                    : 0;
-            const double error = std::hypot(sampled.standard_error[c], missed);
+            const double error = std::hypot(sampled.standard_error[c], missed[c].mass);
             if (!(error <=
                   std::max(request.tolerance(c, rule.value[c]), comparable * rule.standard_error[c])))
                 return Agreement::unknown;

@@ -230,14 +230,11 @@ class AdaptiveEstimator final : public Estimator {
         if (density.gaussians().empty() && is_hit_indicator()) return false;
         Tally tally;
         estimate.tally(false, tally);
-        PointBuffer at(1, density.dimensions());
         for (const Witness& peak : problem_.look->peaks) {
-            for (int d = 0; d < density.dimensions(); ++d) at(0, d) = peak.u[static_cast<std::size_t>(d)];
-            std::array<double, 1> q{1};
-            density.pdf(at, q);
+            const double q = pdf_at(density, peak.u);
             for (std::size_t c = 0; c < tally.value.size(); ++c) {
                 const double mass =
-                    unexplained(peak.value[c], peak.volume, q[0], static_cast<double>(estimate.all_points()),
+                    unexplained(peak.value[c], peak.volume, q, static_cast<double>(estimate.all_points()),
                                 tally.absolute[c]);
                 if (mass > negligible_peak * std::max(tally.absolute[c], std::abs(tally.standard_error[c])))
                     return true;

@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/adaptive/monotone_map.h"
@@ -95,24 +96,8 @@ class Splitter {
         if (!(gain > leaf.gain)) return;
         leaf.gain = gain;
         leaf.split = k;
-        const double beyond = no_left || no_right ? at : beyond_jump(leaf, k, at);
-        leaf.at = beyond > leaf.lower && beyond < leaf.upper ? beyond : at;
+        leaf.at = at;
         leaf.empty_side = no_left || no_right;
-    }
-
-    // At a jump the true place lies up to a few points of the denser side farther out than halfway to the next point. If an
-    // edge is drawn too near, points beyond it are rare and heavy.
-    double beyond_jump(const Leaf& leaf, std::size_t k, double at) const {
-        const double left = profile_.mass(leaf.first, k) / (at - leaf.lower),
-                     right = profile_.mass(k, leaf.last) / (leaf.upper - at);
-        const std::size_t near = std::min(nearby, least_);
-        const double spacings = margin / static_cast<double>(near);
-        const std::vector<double>& x = profile_.x;
-        if (left > MonotoneMap::jump_ratio * right)
-            return std::max(at, x[k - 1] + spacings * (x[k - 1] - x[k - near]));
-        if (right > MonotoneMap::jump_ratio * left)
-            return std::min(at, x[k] - spacings * (x[k + near - 1] - x[k]));
-        return at;
     }
 
     const Profile& profile_;
@@ -169,6 +154,26 @@ double end_power(const Profile& profile, const Leaf& first) {
     return strong || weak ? std::clamp(all.value, least_power, 1.0) : 1;
 }
 
+// The true place of a jump lies up to a few points of the denser side away from the edge halfway between two points. Beyond
+// an edge that is drawn too near, points would be rare and heavy: moves it that far into the other bin.
+void widen_at_jumps(const Profile& profile, const std::vector<Leaf>& leaves, std::vector<double>& edges,
+                    std::vector<double>& masses) {
+    const std::vector<double> before = edges, mass = masses;
+    const auto width = [&](std::size_t k) { return before[k + 1] - before[k]; };
+    for (std::size_t k = 1; k < leaves.size(); ++k) {
+        for (const auto& [dense, other] : {std::pair(k - 1, k), std::pair(k, k - 1)}) {
+            const double height = mass[dense] / width(dense);
+            if (!(height > MonotoneMap::jump_ratio * mass[other] / width(other)) ||
+                !(profile.mass(leaves[other].first, leaves[other].last) > 0))
+                continue; // a bin without weights has a margin of its own
+            const double count = static_cast<double>(leaves[dense].last - leaves[dense].first);
+            const double by = std::min(margin * width(dense) / count, 0.25 * width(other));
+            edges[k] += dense < other ? by : -by;
+            masses[dense] += height * by;
+        }
+    }
+}
+
 } // namespace
 
 MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const double> weights,
@@ -213,6 +218,7 @@ MonotoneMap fit_monotone_map(std::span<const double> positions, std::span<const 
         // The weight of one more point: a bin without non-zero points need not be empty.
         masses.push_back(profile.mass(leaf.first, leaf.last) + one);
     }
+    widen_at_jumps(profile, leaves, edges, masses);
     return {std::move(edges), std::move(masses), end_power(profile, leaves.front())};
 }
 

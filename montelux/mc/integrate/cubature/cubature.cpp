@@ -63,8 +63,7 @@ class CubatureEstimator final : public Estimator {
         // suffice.
         if (!regions_.empty() && !verification_.recalled(regions_.count()) &&
             (reached(request) || (!request.targeted() && verification_.outgrown(regions_.count())))) {
-            verification_.recall(regions_, totals_.value(), totals_.error(), request);
-            add_up();
+            if (verification_.recall(regions_, totals_.value(), totals_.error(), request)) add_up();
             return StepOutcome::advanced;
         }
         verification_.update(regions_, totals_.value(), totals_.error(), request);
@@ -161,7 +160,7 @@ class CubatureEstimator final : public Estimator {
         tally.ready = !searching() && verification_.verified(totals_.value()) && !confirmation_.pending() &&
                       (verification_.recalled(regions_.count()) || at_limit_);
         tally.at_limit = at_limit_;
-        // In one variable halving alone finds a feature of some width, but not several.
+        // Halving alone finds a single feature of one variable.
         tally.localised = (n_ > 1 || verification_.features() > 1) && verification_.evaluations() > 0 &&
                           verification_.blind();
         tally.check_evaluations = verification_.evaluations();
@@ -257,10 +256,10 @@ class CubatureEstimator final : public Estimator {
 
     // No region is left to halve. The error of equal values falls with the number of points.
     StepOutcome end(const StepRequest& request) {
-        if (!verification_.recalled(regions_.count())) {
-            const bool wrong = verification_.recall(regions_, totals_.value(), totals_.error(), request);
+        if (!verification_.recalled(regions_.count()) &&
+            verification_.recall(regions_, totals_.value(), totals_.error(), request)) {
             add_up();
-            if (wrong) return StepOutcome::advanced;
+            return StepOutcome::advanced;
         }
         if (verification_.due(regions_, totals_.value(), totals_.error(), evaluations_, request, true))
             return verify(request);
@@ -280,7 +279,7 @@ class CubatureEstimator final : public Estimator {
         return StepOutcome::finished;
     }
 
-    // Do regions that cannot be halved have larger errors than the target?
+    // Whether regions that cannot be halved have larger errors than the target.
     bool is_beyond_division(const StepRequest& request) const {
         if (!request.targeted()) return false;
         for (std::size_t c = 0; c < components(); ++c) {

@@ -66,17 +66,14 @@ struct CheckedPart {
     std::vector<double> block_sums; // blocks x components
     std::vector<double> lowest, highest;
     std::vector<std::size_t> regions;
-    std::vector<double> differences;             // of each, components side by side
-    std::vector<std::pair<double, bool>> places; // of one variable: is the value a surprise?
-    std::vector<double> surprise_sums;
+    std::vector<double> differences; // of each, components side by side
     NonFiniteCount non_finite;
 
     CheckedPart() = default;
     CheckedPart(int components, bool full)
         : residual(components, full), block_sums(blocks * static_cast<std::size_t>(components)),
           lowest(static_cast<std::size_t>(components), std::numeric_limits<double>::infinity()),
-          highest(static_cast<std::size_t>(components), -std::numeric_limits<double>::infinity()),
-          surprise_sums(static_cast<std::size_t>(components)) {}
+          highest(static_cast<std::size_t>(components), -std::numeric_limits<double>::infinity()) {}
 
     void merge(const CheckedPart& later) {
         surprises.insert(surprises.end(), later.surprises.begin(), later.surprises.end());
@@ -87,9 +84,7 @@ struct CheckedPart {
         for (std::size_t c = 0; c < lowest.size(); ++c) {
             lowest[c] = std::min(lowest[c], later.lowest[c]);
             highest[c] = std::max(highest[c], later.highest[c]);
-            surprise_sums[c] += later.surprise_sums[c];
         }
-        places.insert(places.end(), later.places.begin(), later.places.end());
         non_finite.merge(later.non_finite);
     }
 };
@@ -149,12 +144,9 @@ CheckedPart check_some(const Evaluator& evaluator, const CubatureRegions& region
                 sums[c] += s.weight * residual[c];
                 part.lowest[c] = std::min(part.lowest[c], value);
                 part.highest[c] = std::max(part.highest[c], value);
-                const double size = surprise(regions, s.region, c, value, tolerance[c]);
-                surprising = surprising || size > 0;
-                part.surprise_sums[c] += size;
+                surprising = surprising || surprise(regions, s.region, c, value, tolerance[c]) > 0;
             }
             part.residual.add(residual);
-            if (u.dimensions() == 1) part.places.emplace_back(u.view()(at, 0), surprising);
             if (!surprising) continue;
             CubatureWitness witness{s.region, std::vector<double>(static_cast<std::size_t>(u.dimensions())),
                                     std::vector<double>(m)};
@@ -214,12 +206,6 @@ std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const Cub
     for (double& d : check.differences) d /= static_cast<double>(count);
     check.lowest = std::move(all->lowest);
     check.highest = std::move(all->highest);
-    std::ranges::sort(all->places);
-    for (std::size_t i = 0; i < all->places.size(); ++i)
-        check.groups += all->places[i].second && (i == 0 || !all->places[i - 1].second);
-    for (double sum : all->surprise_sums)
-        check.mean_surprise.push_back(sum /
-                                      static_cast<double>(std::max<std::size_t>(check.surprises.size(), 1)));
     check.non_finite = std::move(all->non_finite);
     const std::size_t m = check.lowest.size();
     for (std::size_t c = 0; c < m; ++c) {

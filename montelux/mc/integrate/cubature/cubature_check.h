@@ -24,17 +24,13 @@ struct CubatureCheck {
     std::vector<CubatureWitness> surprises;
     // Of g - (mean of its region), over the points.
     CovarianceMoments residual;
-    std::vector<double> difference; // of the integral by these points and its value by the rules
-    // The same for each region that has points; components side by side.
-    std::vector<std::size_t> regions;
-    std::vector<double> differences;
+    std::vector<double> difference;   // of the integral by these points and its value by the rules
+    std::vector<std::size_t> regions; // that have points
+    std::vector<double> differences;  // of each, components side by side
     // Standard error of the difference, from the spread of its parts (scrambled Sobol' blocks): mostly too
     // large.
     std::vector<double> standard_error;
     std::vector<double> lowest, highest; // values met
-    // In one variable: groups of neighbouring surprises, with others between them; and their mean size.
-    std::size_t groups = 0;
-    std::vector<double> mean_surprise;
     NonFiniteCount non_finite;
 };
 

@@ -22,7 +22,7 @@ constexpr double suspicion = 2.5;            // standard errors beyond which the
 constexpr double significant_errors = 5;     // standard errors between rules and points
 constexpr std::uint64_t most_rounds = 12;
 constexpr std::uint64_t fewest_points = 16;
-constexpr std::size_t fewest_groups = 3; // of surprises, that call for more points
+constexpr std::size_t fewest_features = 3; // that call for more points
 // Features that are separated by a background of one value, to within a part of the range, in so much of the domain.
 constexpr double flatness = 1e-3, least_background = 0.4;
 constexpr std::uint64_t most_points = 1 << 20; // for them
@@ -135,7 +135,7 @@ CubatureVerification::CubatureVerification(const Problem& problem, std::uint64_t
     : problem_(problem), points_(points), residual_(problem.evaluator.components(), problem.full_covariance),
       lowest_(static_cast<std::size_t>(problem.evaluator.components()), infinity),
       highest_(lowest_.size(), -infinity), next_(4 * points), shown_(lowest_.size(), 0.0),
-      claimed_(lowest_.size(), 0.0), drift_(lowest_.size(), 1.0), scattered_(lowest_.size(), 0.0) {}
+      drift_(lowest_.size(), 1.0), scattered_(lowest_.size(), 0.0) {}
 
 bool CubatureVerification::verified(std::span<const double> value) const {
     if (points_ == 0) return true;
@@ -254,7 +254,7 @@ void CubatureVerification::note_features(const CubatureRegions& regions) {
         }
         if (flat < least_background) continue;
         features_ = std::max(features_, features);
-        if (features >= fewest_groups) scattered_[c] = height / std::max(1 - flat, 1e-300);
+        if (features >= fewest_features) scattered_[c] = height / std::max(1 - flat, 1e-300);
     }
 }
 
@@ -287,8 +287,6 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
         // Once wrong, rules claim no smaller error than the points' own.
         slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
     }
-    for (std::size_t c = 0; check->groups >= fewest_groups && c < value.size(); ++c)
-        scattered_[c] = std::max(scattered_[c], check->mean_surprise[c]);
     checked_points_ = points;
     enough_points_ = true;
     for (std::size_t c = 0; request.targeted() && c < value.size(); ++c)
@@ -367,11 +365,9 @@ bool CubatureVerification::recall(CubatureRegions& regions, std::span<const doub
     const bool jumps = problem_.evaluator.dimensions() == 1 && raise_seam_errors(regions);
     const bool wrong = jumps || !of_regions.empty();
     unsurprised_ = unsurprised_ && !wrong;
-    bool doubtful = wrong;
-    for (std::size_t r = 0; r < regions.count(); ++r) doubtful = doubtful || regions.marks(r).rough;
-    // Where rules were wrong or do not converge fast, they claim no smaller error than the checks can show.
-    for (std::size_t c = 0; c < value.size(); ++c)
-        shown_[c] = doubtful ? shown_by_checks * request.tolerance(c, value[c]) : 0;
+    // Once wrong, rules claim no smaller error than the checks can show.
+    for (std::size_t c = 0; wrong && c < value.size(); ++c)
+        shown_[c] = shown_by_checks * request.tolerance(c, value[c]);
     return wrong;
 }
 
@@ -382,8 +378,8 @@ void CubatureVerification::revisit(CubatureRegions& regions) {
 }
 
 void CubatureVerification::claim(std::span<const double> error) {
-    for (std::size_t c = 0; c < claimed_.size(); ++c)
-        if (std::isfinite(error[c])) claimed_[c] = share_of_claim * error[c];
+    for (std::size_t c = 0; c < shown_.size(); ++c)
+        if (std::isfinite(error[c])) shown_[c] = share_of_claim * error[c];
 }
 
 void CubatureVerification::add_differences(CubatureRegions& regions, const CubatureCheck& check,
@@ -484,7 +480,6 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(points_in_bulk_);
     state.put(slack_);
     state.put(shown_);
-    state.put(claimed_);
     state.put(drift_);
     state.put(static_cast<std::uint64_t>(features_));
     state.put(scattered_);
@@ -532,9 +527,7 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     points_in_bulk_ = state.get_double();
     slack_ = state.get_doubles();
     shown_ = state.get_doubles();
-    claimed_ = state.get_doubles();
     fits(shown_, m);
-    fits(claimed_, m);
     drift_ = state.get_doubles();
     fits(drift_, m);
     features_ = state.get_word();

@@ -75,16 +75,17 @@ class CubatureVerification {
     std::size_t features() const { return features_; }
     // Additional error of a component if points have shown that the rules may be wrong.
     double slack(std::size_t component) const {
-        return std::max({slack_.empty() ? 0.0 : slack_[component], shown_[component], claimed_[component],
+        return std::max({slack_.empty() ? 0.0 : slack_[component], shown_[component],
                          enough_points_ ? overlooked(component) : 0.0});
     }
-    // Are there several separate features? Then there may be more of them, which further points find.
+    // Whether there are several separate features, so that there may be more of them, which further points find.
     bool is_scattered() const {
         return std::ranges::any_of(scattered_, [](double size) { return size > 0; });
     }
-    // Would a check have many more points than the last one?
+    // Whether so many points are many more than those of the last check.
     bool may_grow(std::uint64_t points) const { return points >= 2 * checked_points_; }
-    // By which a component's errors must grow: the value moved by more than they between two checks that found nothing.
+    // Factor by which a component's errors must grow: the value moved by more than they between two checks that found
+    // nothing.
     double drift(std::size_t component) const { return drift_[component]; }
     // Normally empty.
     const std::string& warning() const { return warning_; }
@@ -121,11 +122,12 @@ class CubatureVerification {
     NonFiniteCount non_finite_;
     double points_in_bulk_ = 0;
     bool surprised_ = false; // by any check
-    // Least errors: after surprises; where rules were wrong or do not converge fast; of what was claimed and confirmed.
-    std::vector<double> slack_, shown_, claimed_;
+    // Least errors: after surprises; by what was seen before, once it showed rules to be wrong, or a share of what was
+    // claimed and confirmed.
+    std::vector<double> slack_, shown_;
     std::vector<double> drift_;
     std::size_t features_ = 0;
-    std::vector<double> scattered_; // mean size of several separate features or surprises; else 0
+    std::vector<double> scattered_; // mean height of several separate features; else 0
     std::uint64_t checked_points_ = 0;
     bool enough_points_ = true; // for features of that size
     bool unsurprised_ = false;  // since before the last check

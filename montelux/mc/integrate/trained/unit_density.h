@@ -50,4 +50,14 @@ class UnitDensity {
     std::variant<AdaptiveMap, MixtureDensity> density_;
 };
 
+// Density at one point of the cube.
+template <typename Density>
+double pdf_at(const Density& density, std::span<const double> u) {
+    PointBuffer at(1, static_cast<int>(u.size()));
+    for (std::size_t d = 0; d < u.size(); ++d) at(0, static_cast<int>(d)) = u[d];
+    double q = 1;
+    density.pdf(at, std::span(&q, 1));
+    return q;
+}
+
 } // namespace montelux

@@ -13,8 +13,7 @@
 namespace montelux {
 namespace {
 
-constexpr double far_above = 32; // times the mean of |g|: a value that is examined
-constexpr std::size_t most_poles = 32;
+constexpr double far_above = 32;                   // times the mean of |g|: a value that is examined
 constexpr std::uint64_t most_of_examination = 600; // evaluations, for each variable and one more
 
 // Integral of |g|, or what is known of it.
@@ -24,7 +23,7 @@ double size_of(const Tally& tally, std::size_t c) {
                      std::isfinite(tally.standard_error[c]) ? tally.standard_error[c] : 0.0});
 }
 
-// Is a point within the half height of a peak?
+// Whether a point is within the half height of a peak.
 bool lies_within(const Witness& peak, const std::vector<double>& u) {
     for (std::size_t d = 0; d < u.size(); ++d)
         if (std::abs(u[d] - peak.u[d]) > peak.extent[d]) return false;
@@ -94,13 +93,25 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             const Magnitude magnitude = [c](const std::vector<double>& row) { return std::abs(row[c]); };
             Witness peak = witness;
             measure(raw, peak, magnitude);
-            look_.peaks.push_back(std::move(peak));
+            if (!is_rounding(peak)) look_.peaks.push_back(std::move(peak));
             const PoleReport pole = search_pole(raw, witness, c);
             known = {pole.u, value, pole.unresolved};
             if (pole.diverges && !near_infinity(pole.u) && divergence_.empty()) divergence_ = place(pole.u);
-            if (!pole.slow.shells.empty() && look_.slow.size() < most_poles) look_.slow.push_back(pole.slow);
+            note_slow(pole.slow);
             evaluations_ += raw.evaluations();
         }
+}
+
+// Keeps a slow pole; greater values near it are followed to the same one.
+void Evidence::note_slow(const SlowShells& slow) {
+    constexpr double same = 0x1p-20;
+    if (slow.shells.empty() || look_.slow.size() == SlowShells::most) return;
+    const bool known = std::ranges::any_of(look_.slow, [&](const SlowShells& other) {
+        for (std::size_t d = 0; d < slow.place.size(); ++d)
+            if (std::abs(slow.place[d] - other.place[d]) > same) return false;
+        return true;
+    });
+    if (!known) look_.slow.push_back(slow);
 }
 
 // Ridges that lead out to infinity look like poles in the variables of the cube; the first look asks whether tails converge.
@@ -133,6 +144,8 @@ std::string Evidence::place(std::span<const double> at) const {
 void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tally& tally) const {
     const double points = static_cast<double>(tally.evaluations);
     std::vector<double> least(tally.standard_error);
+    std::vector<Unreached> missed_of(tally.value.size());
+    if (tally.statistical) missed_of = unreached(look_.slow, missed_of.size(), density, points);
     for (std::size_t c = 0; c < tally.value.size(); ++c) {
         const double tolerance = std::max(request.tolerance(c, tally.value[c]), tally.standard_error[c]);
         double worst = 0;
@@ -140,15 +153,17 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         for (const auto* all : {&look_.peaks, &look_.witnesses})
             for (const Witness& w : *all) {
                 if (!tally.statistical) break; // rules are compared with every witness
+                const auto mass_by = [&](double q) {
+                    return unexplained(w.value[c], w.volume, q, points, size_of(tally, c));
+                };
+                // Most witnesses are explained by any density.
+                if (!(mass_by(0x1p-4) > tolerance)) continue;
+                // A peak speaks for those within it.
                 if (all == &look_.witnesses && std::ranges::any_of(look_.peaks, [&](const Witness& peak) {
                         return lies_within(peak, w.u);
                     }))
-                    continue; // the peak speaks for it
-                // Most witnesses are explained by any density.
-                if (!(unexplained(w.value[c], w.volume, 0x1p-4, points, size_of(tally, c)) > tolerance))
                     continue;
-                const double mass =
-                    unexplained(w.value[c], w.volume, pdf_at(density, w.u), points, size_of(tally, c));
+                const double mass = mass_by(density ? pdf_at(*density, w.u) : 1);
                 if (mass > worst) worst = mass, where = &w;
             }
         std::array<char, 200> text;
@@ -171,7 +186,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
             least[c] += unresolved;
         }
         if (!tally.statistical) continue;
-        const auto [missed, at] = unreached(look_.slow, c, density, points);
+        const auto [missed, at] = missed_of[c];
         if (at && missed > tolerance) {
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than the points reach", missed,

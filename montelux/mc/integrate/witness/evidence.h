@@ -50,6 +50,7 @@ class Evidence {
         double size = 0, unresolved = 0;
     };
     std::string place(std::span<const double> u) const;
+    void note_slow(const SlowShells& slow);
     bool near_infinity(std::span<const double> u) const;
 
     Evaluator& evaluator_;

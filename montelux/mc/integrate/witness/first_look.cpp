@@ -22,7 +22,7 @@ constexpr std::array<double, 6> ladder{3, 8, 15, 24, 36, 50};
 constexpr double suspicious = 0.2; // of the inner shells' masses beside the outer ones'
 constexpr double matters = 1e-3;   // of the greatest mass of a shell: a difference between two
 constexpr double outstanding = 16; // times the median of the look
-constexpr std::size_t most_peaks = 3, most_slow = 16, more_corners = 8;
+constexpr std::size_t most_peaks = 3, more_corners = 8;
 constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 constexpr std::size_t most_anchors = 16; // of a variable
 
@@ -187,31 +187,33 @@ class Look {
         return paths;
     }
 
-    // Ladders to corners: where one of them is slow, others may be. To the slow ones also those on which one variable
-    // falls with the square of the others or the others with its: x + y^2 has two scales.
+    Path to_corner(const std::vector<double>& place, std::vector<int> rates = {}) const {
+        Path path{{}, {}, std::vector<double>(n_, 1.0), std::move(rates)};
+        for (std::size_t d = 0; d < n_; ++d) {
+            path.anchors.push_back(anchors_[d][place[d] == 0 ? 0 : 1]);
+            path.side.push_back(place[d] == 0 ? 1 : -1);
+        }
+        return path;
+    }
+
+    // Further ladders where a corner is slow: to it, on which one variable falls with the square of the others or the
+    // others with its, since x + y^2 has two scales; and to more corners of many variables.
     std::vector<Path> corner_paths() {
         std::vector<Path> paths;
         for (const SlowShells& slow : look_.slow) {
-            if (std::ranges::find(slow.place, SlowShells::free) != slow.place.end()) continue;
+            if (slow.codimension() < static_cast<int>(n_)) continue;
             for (std::size_t one = 0; one < n_; ++one)
                 for (int rate : {1, 2}) {
-                    Path path{{}, {}, std::vector<double>(n_, 1.0), std::vector<int>(n_, 3 - rate)};
-                    path.rates[one] = rate;
-                    for (std::size_t d = 0; d < n_; ++d) {
-                        path.anchors.push_back(anchors_[d][slow.place[d] == 0 ? 0 : 1]);
-                        path.side.push_back(slow.place[d] == 0 ? 1 : -1);
-                    }
-                    if (n_ > 2 || rate == 1) paths.push_back(std::move(path));
+                    if (n_ == 2 && rate == 2) continue; // the other variable's with 1
+                    std::vector<int> rates(n_, 3 - rate);
+                    rates[one] = rate;
+                    paths.push_back(to_corner(slow.place, std::move(rates)));
                 }
         }
         for (std::size_t i = 0; n_ > 3 && i < more_corners; ++i) {
-            Path path{{}, {}, std::vector<double>(n_, 1.0)};
-            for (std::size_t d = 0; d < n_; ++d) {
-                const bool upper = random() < 0.5;
-                path.anchors.push_back(anchors_[d][upper ? 1 : 0]);
-                path.side.push_back(upper ? -1 : 1);
-            }
-            paths.push_back(std::move(path));
+            Point place(n_);
+            for (double& u : place) u = random() < 0.5;
+            paths.push_back(to_corner(place));
         }
         return paths;
     }
@@ -259,7 +261,7 @@ class Look {
             slow.place[d] = path.anchors[d].u;
             if (slow.place[d] != 0 && slow.place[d] != 1) return;
         }
-        if (look_.slow.size() == most_slow ||
+        if (look_.slow.size() == SlowShells::most ||
             std::ranges::find(look_.slow, slow.place, &SlowShells::place) != look_.slow.end())
             return;
         const double finest = std::min(path.finest(), ladder.back()) / ladder.back();
@@ -292,17 +294,8 @@ class Look {
     }
 
     bool any_slow(const SlowShells& slow) const {
-        constexpr std::size_t outer = 1, inner = 4;
-        for (std::size_t c = 0; c < components(); ++c) {
-            const auto mass = [&](std::size_t i) {
-                return std::abs(slow.shells[i].value[c]) * slow.shells[i].volume;
-            };
-            if (std::ranges::all_of(slow.shells,
-                                    [c](const Witness& w) { return std::isfinite(w.value[c]); }) &&
-                fall_slowly(mass(outer), mass(inner), slow.exponents[inner] - slow.exponents[outer],
-                            slow.codimension()))
-                return true;
-        }
+        for (std::size_t c = 0; c < components(); ++c)
+            if (slow.is_slow(c)) return true;
         return false;
     }
 
@@ -492,13 +485,6 @@ class Look {
             measure(raw_, top, magnitude);
             if (!is_rounding(top)) look_.peaks.push_back(std::move(top));
         }
-    }
-
-    // Values that only a few neighbouring numbers have: a pole whose distance is rounded to zero.
-    static bool is_rounding(const Witness& top) {
-        for (std::size_t d = 0; d < top.u.size(); ++d)
-            if (top.extent[d] < 0x1p-48 * top.u[d]) return true;
-        return false;
     }
 
     // Does the value fall along the line from the top of a known peak? Otherwise it is another one.

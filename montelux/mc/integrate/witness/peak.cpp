@@ -63,6 +63,12 @@ void measure(RawValues& raw, Witness& top, const Magnitude& magnitude) {
     }
 }
 
+bool is_rounding(const Witness& top) {
+    for (std::size_t d = 0; d < top.u.size(); ++d)
+        if (top.extent[d] < 0x1p-48 * top.u[d]) return true;
+    return false;
+}
+
 double unexplained(double value, double volume, double q, double points, double size) {
     const double mass = part * std::abs(value) * volume;
     if (!(std::abs(value) > ordinary * q * size) || !(points * q * volume < enough_points)) return 0;

@@ -25,6 +25,9 @@ Witness climb(RawValues& raw, Witness top, const Magnitude& magnitude);
 // the exponents of the distances on each side: 12 n evaluations, a few more where the top is close to the origin of the cube.
 void measure(RawValues& raw, Witness& top, const Magnitude& magnitude);
 
+// Was the value measured that only a few neighbouring numbers have, as where a pole's distance is rounded to zero?
+bool is_rounding(const Witness& top);
+
 // Lower bound on the integral of |g| over a peak of this value that points of density q have hardly seen: fewer than
 // eight of `points` are expected within its volume, although the weight |g| / q there is far above `size`, the
 // integral of |g| as claimed. 0 where the points explain the peak.

@@ -94,10 +94,7 @@ class PoleSearch {
         const double n = static_cast<double>(u.size());
         for (std::size_t i = 0; i < points.size(); ++i)
             slow.shells.push_back({points[i], rows[i], width * std::exp2(-n * exponents[i])});
-        const auto mass = [&](std::size_t i) {
-            return std::abs(slow.shells[i].value[component_]) * slow.shells[i].volume;
-        };
-        if (!fall_slowly(mass(1), mass(4), exponents[4] - exponents[1], slow.codimension())) return {};
+        if (!slow.is_slow(component_)) return {};
         return slow;
     }
 

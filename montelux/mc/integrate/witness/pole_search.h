@@ -13,8 +13,8 @@ struct PoleReport {
     // Integral of |g| over the points that doubles do not tell from the pole, in one variable; 0 without a pole.
     double unresolved = 0;
     std::vector<double> u; // where
-    // In several variables, where masses fall slowly towards the pole; no shells elsewhere.
-    SlowShells slow;
+    SlowShells
+        slow; // around a pole of several variables, if masses fall slowly towards it; else without shells
 };
 
 // Follows |g_component| from a witness to the greatest value along each variable, and compares dyadic shells around

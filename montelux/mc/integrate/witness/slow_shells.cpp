@@ -1,7 +1,6 @@
 #include "montelux/mc/integrate/witness/slow_shells.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -21,6 +20,13 @@ double between(double first, double last, double length) {
 
 int SlowShells::codimension() const {
     return static_cast<int>(std::ranges::count_if(place, [](double u) { return u != free; }));
+}
+
+bool SlowShells::is_slow(std::size_t component) const {
+    constexpr std::size_t outer = 1, inner = 4;
+    const auto mass = [&](std::size_t i) { return std::abs(shells[i].value[component]) * shells[i].volume; };
+    return std::ranges::all_of(shells, [&](const Witness& w) { return std::isfinite(w.value[component]); }) &&
+           fall_slowly(mass(outer), mass(inner), exponents[inner] - exponents[outer], codimension());
 }
 
 bool fall_slowly(double outer_mass, double inner_mass, double exponents_between, int codimension) {
@@ -61,31 +67,24 @@ double unreached(const SlowShells& slow, std::size_t c, std::span<const double> 
     return sum;
 }
 
-Unreached unreached(std::span<const SlowShells> all, std::size_t c, const UnitDensity* density,
-                    double points) {
-    Unreached found;
-    double most = 0;
-    std::vector<double> of_codimension, q;
+std::vector<Unreached> unreached(std::span<const SlowShells> all, std::size_t components,
+                                 const UnitDensity* density, double points) {
+    std::vector<Unreached> found(components);
+    std::vector<double> most(components), q;
+    std::vector<std::vector<double>> sums(components); // by codimension
     for (const SlowShells& slow : all) {
         q.clear();
-        for (const Witness& w : slow.shells) q.push_back(pdf_at(density, w.u));
-        const double mass = unreached(slow, c, q, points);
-        of_codimension.resize(std::max(of_codimension.size(), slow.place.size() + 1), 0.0);
-        double& sum = of_codimension[static_cast<std::size_t>(slow.codimension())];
-        sum += mass;
-        found.mass = std::max(found.mass, sum);
-        if (mass > most) most = mass, found.at = &slow;
+        for (const Witness& w : slow.shells) q.push_back(density ? pdf_at(*density, w.u) : 1);
+        for (std::size_t c = 0; c < components; ++c) {
+            const double mass = unreached(slow, c, q, points);
+            sums[c].resize(slow.place.size() + 1);
+            double& sum = sums[c][static_cast<std::size_t>(slow.codimension())];
+            sum += mass;
+            found[c].mass = std::max(found[c].mass, sum);
+            if (mass > most[c]) most[c] = mass, found[c].at = &slow;
+        }
     }
     return found;
-}
-
-double pdf_at(const UnitDensity* density, const std::vector<double>& u) {
-    if (!density) return 1;
-    PointBuffer at(1, static_cast<int>(u.size()));
-    for (std::size_t d = 0; d < u.size(); ++d) at(0, static_cast<int>(d)) = u[d];
-    std::array<double, 1> q{1};
-    density->pdf(at, q);
-    return q[0];
 }
 
 void save(StateWriter& state, const SlowShells& slow) {

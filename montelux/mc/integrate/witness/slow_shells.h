@@ -15,11 +15,14 @@ namespace montelux {
 // slowly that uniform points have an infinite variance there: |g| ~ r^-a, where 2 a is at least the codimension.
 struct SlowShells {
     static constexpr double free = -1;
-    std::vector<double> place;     // coordinates, or `free`
-    std::vector<Witness> shells;   // with their volumes, of 2^(-codimension k) each
-    std::vector<double> exponents; // k
+    static constexpr std::size_t most = 32; // ends of an integral that are kept
+    std::vector<double> place;              // coordinates, or `free`
+    std::vector<Witness> shells;            // with their volumes, of 2^(-codimension k) each
+    std::vector<double> exponents;          // k
 
     int codimension() const;
+    // Are these shells slow for a component, and all of its values finite?
+    bool is_slow(std::size_t component) const;
 };
 
 // Do masses fall so slowly between two shells?
@@ -29,17 +32,15 @@ bool fall_slowly(double outer_mass, double inner_mass, double exponents_between,
 // shells. Masses follow a power between two shells, and inside the last one.
 double unreached(const SlowShells& slow, std::size_t c, std::span<const double> q, double points);
 
-// The same of all slow ends together, and the one of them that holds most; null where none holds anything. Several
-// corners add up; what lies closer to an edge contains what lies closer to its corners.
+// Part of the integral that lies closer to all slow ends than points reach, and the end that holds most of it; null where
+// none holds anything. Several corners add up; what lies closer to an edge contains what lies closer to its corners.
 struct Unreached {
     double mass = 0;
     const SlowShells* at = nullptr;
 };
-Unreached unreached(std::span<const SlowShells> all, std::size_t c, const UnitDensity* density,
-                    double points);
-
-// Density of the cube at a point; null: 1 everywhere.
-double pdf_at(const UnitDensity* density, const std::vector<double>& u);
+// One for each component. `density`: of the points; null: uniform.
+std::vector<Unreached> unreached(std::span<const SlowShells> all, std::size_t components,
+                                 const UnitDensity* density, double points);
 
 void save(StateWriter& state, const SlowShells& slow);
 void load(StateReader& state, SlowShells& slow);

@@ -151,7 +151,7 @@ TEST(FitMonotoneMap, RecoversDensities) {
                     (2 * std::sqrt(pi / 200));
          },
          0.12},
-        {[](double x) { return x < 0.6 ? 0.15 : 2.275; }, 0.08}}; // a margin beyond the jump among them
+        {[](double x) { return x < 0.6 ? 0.15 : 2.275; }, 0.06}};
     for (std::size_t i = 0; i < cases.size(); ++i) {
         const MonotoneMap map = fitted(cases[i].pdf, 20'000, {.bins = 32});
         const double distance =

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/witness/evidence.h"
 #include "montelux/mc/integrate/witness/largest_values.h"
 #include "montelux/mc/integrate/witness/peak.h"
 #include "montelux/mc/integrate/witness/pole_search.h"
@@ -128,7 +129,7 @@ TEST(Evidence, PolesInsideOfSeveralVariablesRaiseTheError) {
     const auto f = [](std::span<const double> x) {
         return std::pow((x[0] - 0.3) * (x[0] - 0.3) + (x[1] - 0.7) * (x[1] - 0.7), -0.9);
     };
-    // In polar coordinates; the square's distance from the pole integrated over the angle by 4000 midpoints.
+    // Integral in polar coordinates, over the angle by 4000 midpoints.
     double exact = 0;
     for (int i = 0; i < 4000; ++i) {
         const double angle = 2 * std::numbers::pi * (i + 0.5) / 4000, c = std::cos(angle),
@@ -144,6 +145,33 @@ TEST(Evidence, PolesInsideOfSeveralVariablesRaiseTheError) {
             EXPECT_LT(std::abs(r.value[0] - exact), 4 * r.standard_error[0])
                 << name << " " << seed << ": " << to_string(r);
         }
+}
+
+// A pole that ever greater values lead to is one pole.
+TEST(Evidence, PolesCountOnce) {
+    const Integrand f([](std::span<const double> x) {
+        return std::pow((x[0] - 0.3) * (x[0] - 0.3) + (x[1] - 0.7) * (x[1] - 0.7), -0.9);
+    });
+    Evaluator evaluator(f, Domain::unit_cube(2));
+    Evidence evidence(evaluator, 1);
+    std::vector<double> errors;
+    for (double distance : {1e-3, 1e-6, 1e-9}) {
+        PointBuffer x(1, 2);
+        x(0, 0) = 0.3 + distance;
+        x(0, 1) = 0.7;
+        ValueBuffer g(1, 1);
+        NonFiniteCount non_finite;
+        evaluator(x, g, non_finite);
+        Tally tally;
+        tally.value = tally.absolute = {14};
+        tally.standard_error = {0.1};
+        tally.evaluations = 60'000;
+        evidence.examine(tally, 100'000);
+        evidence.judge(nullptr, {}, tally);
+        errors.push_back(tally.standard_error[0]);
+    }
+    EXPECT_GT(errors.front(), 1);
+    EXPECT_NEAR(errors.back(), errors.front(), 0.1 * errors.front());
 }
 
 TEST(Evidence, RelativeErrorsOfVectorsWithZeros) {
