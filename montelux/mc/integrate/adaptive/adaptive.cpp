@@ -28,7 +28,7 @@ constexpr int share_step_of_few = 8;                 // granularity of shares, a
 constexpr std::uint64_t max_training_points = 65536; // of a round
 constexpr int max_rounds = 24;
 constexpr int max_retrainings = 4;
-constexpr double fixed_training_share = 0.1; // of a fixed number of evaluations,
+constexpr double fixed_training_share = 0.2; // of a fixed number of evaluations,
 constexpr double least_training = 20000; // or this many, if they are at most a third or, of a fixed number
 constexpr double enough_for_half = 4096; // above this, a half: three rounds fit far better than two
 constexpr double disagreement = 2e-3;    // p-value of the training rounds below which there is a warning
@@ -45,7 +45,7 @@ constexpr double uniform_reach = 32768; // evaluations within which uniform poin
 constexpr std::uint64_t survey_points = 128, most_surveyed = 6;
 // Points of an indicator that tell its error, and evaluations within which uniform points are expected to reach a target.
 constexpr std::uint64_t enough_hits = 16;
-constexpr double reach_of_indicators = 1 << 20;
+constexpr double reach_of_indicators = 1 << 24;
 // Uniform points behind a claim in several variables: all of them miss a region of 1/5000 of the cube in 4 %
 // of cases.
 constexpr std::uint64_t plateau_evaluations = 16384;
@@ -223,6 +223,13 @@ class AdaptiveEstimator final : public Estimator {
     bool is_hit_indicator() const {
         return trainer_.flat_where_nonzero() && trainer_.nonzero() >= enough_hits;
     }
+    // At jumps across a surface errors of low-discrepancy points fall more slowly (He and Wang 2015, "On the convergence
+    // rate of randomized quasi-Monte Carlo for discontinuous functions").
+    double expected_rest_of_indicator(const StepRequest& request) const {
+        const double n = problem_.evaluator.dimensions();
+        const bool jumps = trainer_.nonzero() < uniform_.all_points();
+        return jumps ? uniform_.expected_rest(request, (n + 1) / (2 * n)) : uniform_.expected_rest(request);
+    }
     // Was a peak seen that points of this density do not explain?
     bool misses_a_peak(const MixtureDensity& density, const MixtureEstimate& estimate) const {
         if (!problem_.look || problem_.look->peaks.empty() || estimate.points() == 0) return false;
@@ -257,8 +264,11 @@ class AdaptiveEstimator final : public Estimator {
     bool uniform_will_do(const StepRequest& request) const {
         if (!request.targeted()) return false;
         // A trained density cannot follow the jumps of an indicator, and costs far more time per point.
-        if (is_hit_indicator())
-            return retrained_ > 0 || uniform_.expected_rest(request) <= reach_of_indicators;
+        if (is_hit_indicator()) {
+            const double expected = expected_rest_of_indicator(request);
+            return expected <= static_cast<double>(request.max_evaluations) &&
+                   (retrained_ > 0 || expected <= reach_of_indicators);
+        }
         if (trainer_.effective_share() < trusted_exploration) return false;
         const bool even = trainer_.effective_share() > flat;
         const double expected =

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double fastest_fall = 1.5;    // exponent by which errors may fall with the number of points,
 constexpr double most_inflation = 3;    // and the largest factor by which a faster fall is undone
-constexpr double usual_fall = 1.2;      // exponent by which they usually fall
+constexpr double cautious = 0.5;        // deviations of an error's own error that are added to it
 constexpr double heavy_weight = 5;      // times the mean, of one sample,
 constexpr double heavy_influence = 0.5; // and times the standard error, of what it adds
 // A single one of normal replicates hardly ever causes so much of the spread.
@@ -57,7 +57,7 @@ double MixtureEstimate::standard_error(const CovarianceMoments& moments, int com
 }
 
 double MixtureEstimate::caution() const {
-    return 1 + 1 / std::sqrt(2.0 * std::max(1, sums_.sums.replicates() - 1));
+    return 1 + cautious / std::sqrt(2.0 * std::max(1, sums_.sums.replicates() - 1));
 }
 
 double MixtureEstimate::least_error(const CovarianceMoments& moments, int component) const {
@@ -102,9 +102,9 @@ std::uint64_t MixtureEstimate::next_end(const StepRequest& request, std::uint64_
     return std::min(goal, (points_ + most) / balanced * balanced);
 }
 
-double MixtureEstimate::expected_rest(const StepRequest& request) const {
+double MixtureEstimate::expected_rest(const StepRequest& request, double fall) const {
     const double ratio = std::max(1.0, error_ratio(request));
-    return static_cast<double>(evaluations()) * (std::pow(ratio, 1 / usual_fall) - 1);
+    return static_cast<double>(evaluations()) * (std::pow(ratio, 1 / fall) - 1);
 }
 
 void MixtureEstimate::tally(bool full_covariance, Tally& tally) const {

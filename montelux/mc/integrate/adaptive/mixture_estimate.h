@@ -37,8 +37,9 @@ class MixtureEstimate {
     // above points(): nothing more can be done.
     std::uint64_t next_end(const StepRequest& request, std::uint64_t first, std::uint64_t balanced,
                            std::uint64_t most) const;
-    // Expected further evaluations.
-    double expected_rest(const StepRequest& request) const;
+    // Expected further evaluations if errors fall with this power of the number of points; the usual one of integrands
+    // without jumps.
+    double expected_rest(const StepRequest& request, double fall = 1.2) const;
     // Fills values, errors and covariance; zero with infinite errors while there are no points.
     void tally(bool full_covariance, Tally& tally) const;
 
@@ -63,8 +64,8 @@ class MixtureEstimate {
     // Lower bound by the number of points, whatever the spread of the replicates.
     double least_error(const CovarianceMoments& moments, int component) const;
     double inflation(double standard_error, int component) const;
-    // By which errors are raised: a run stops as soon as they are small enough, and so prefers those that chance made too
-    // small. One standard deviation of an error that is estimated from so many replicates.
+    // Factor that raises errors: a run stops as soon as they are small enough, and so prefers those that chance made too
+    // small. Half a standard deviation of an error that is estimated from so many replicates.
     double caution() const;
 
     MixtureSums sums_;

@@ -9,6 +9,7 @@
 #include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/integrate/witness/pole_search.h"
+#include "montelux/mc/integrate/witness/ridge.h"
 
 namespace montelux {
 namespace {
@@ -96,7 +97,10 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             if (!is_rounding(peak)) look_.peaks.push_back(std::move(peak));
             const PoleReport pole = search_pole(raw, witness, c);
             known = {pole.u, value, pole.unresolved};
-            if (pole.diverges && !near_infinity(pole.u) && divergence_.empty()) divergence_ = place(pole.u);
+            const bool diverges = is_far_out(evaluator_.domain(), pole.u)
+                                      ? ridge_diverges(raw, pole.u, magnitude)
+                                      : pole.diverges;
+            if (diverges && divergence_.empty()) divergence_ = place(pole.u);
             note_slow(pole.slow);
             evaluations_ += raw.evaluations();
         }
@@ -112,16 +116,6 @@ void Evidence::note_slow(const SlowShells& slow) {
         return true;
     });
     if (!known) look_.slow.push_back(slow);
-}
-
-// Ridges that lead out to infinity look like poles in the variables of the cube; the first look asks whether tails converge.
-bool Evidence::near_infinity(std::span<const double> u) const {
-    constexpr double near = 1e-4;
-    const std::span<const Range> ranges = evaluator_.domain().ranges();
-    for (std::size_t d = 0; d < ranges.size(); ++d)
-        if ((std::isinf(ranges[d].lower) && u[d] < near) || (std::isinf(ranges[d].upper) && 1 - u[d] < near))
-            return true;
-    return false;
 }
 
 std::string Evidence::place(std::span<const double> at) const {

@@ -51,7 +51,6 @@ class Evidence {
     };
     std::string place(std::span<const double> u) const;
     void note_slow(const SlowShells& slow);
-    bool near_infinity(std::span<const double> u) const;
 
     Evaluator& evaluator_;
     std::uint64_t seed_;

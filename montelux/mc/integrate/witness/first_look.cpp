@@ -9,6 +9,7 @@
 
 #include "montelux/mc/integrate/witness/peak.h"
 #include "montelux/mc/integrate/witness/raw_values.h"
+#include "montelux/mc/integrate/witness/ridge.h"
 #include "montelux/mc/integrate/witness/shells.h"
 #include "montelux/mc/random/hash.h"
 
@@ -405,9 +406,16 @@ class Look {
         for (int i = 0; i < 2; ++i) {
             Path other = path;
             for (std::size_t d = 0; d < n_; ++d) other.reach[d] *= 0.3 + 0.7 * random();
-            if (!diverges_along(other, c)) return false;
+            if (!diverges_along(other, c)) return ridge_diverges_along(path, c);
         }
         return diverges_along(path, c);
+    }
+
+    bool ridge_diverges_along(const Path& path, std::size_t c) {
+        constexpr double far_out = 20; // exponent
+        return goes_to_infinity(path) && diverges_along(path, c) &&
+               ridge_diverges(raw_, path.at(far_out),
+                              [c](const std::vector<double>& row) { return std::abs(row[c]); });
     }
 
     bool diverges_along(const Path& path, std::size_t c) {

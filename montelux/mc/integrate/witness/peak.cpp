@@ -30,7 +30,7 @@ Witness climb(RawValues& raw, Witness top, const Magnitude& magnitude) {
     return top;
 }
 
-void measure(RawValues& raw, Witness& top, const Magnitude& magnitude) {
+void measure(RawValues& raw, Witness& top, const Magnitude& magnitude, int finer) {
     const std::size_t n = top.u.size();
     const double half = 0.5 * magnitude(top.value);
     // Exponents of distances: down to the spacing of doubles, which is finer towards the origin of the cube.
@@ -41,7 +41,7 @@ void measure(RawValues& raw, Witness& top, const Magnitude& magnitude) {
         inside[i] = 52 - (i % 2 == 0 ? std::log2(std::min(u, 0.5)) : 0);
         widest = std::max(widest, inside[i]);
     }
-    const int bisections = static_cast<int>(std::ceil(std::log2(widest))); // to less than one
+    const int bisections = static_cast<int>(std::ceil(std::log2(widest))) + finer;
     for (int round = 0; round < bisections; ++round) {
         std::vector<std::vector<double>> points;
         for (std::size_t i = 0; i < 2 * n; ++i) {

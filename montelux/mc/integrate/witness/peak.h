@@ -22,8 +22,9 @@ using Magnitude = std::function<double(const std::vector<double>& values)>;
 // The greatest value at distances of all scales, along one variable after the other: 26 n evaluations.
 Witness climb(RawValues& raw, Witness top, const Magnitude& magnitude);
 // Measures the extents of a peak and its volume, the box within which the magnitude stays above a half, by bisection of
-// the exponents of the distances on each side: 12 n evaluations, a few more where the top is close to the origin of the cube.
-void measure(RawValues& raw, Witness& top, const Magnitude& magnitude);
+// the exponents of the distances on each side to within one: 12 n evaluations, a few more where the top is close to the
+// origin of the cube. `finer`: further bisections.
+void measure(RawValues& raw, Witness& top, const Magnitude& magnitude, int finer = 0);
 
 // Was the value measured that only a few neighbouring numbers have, as where a pole's distance is rounded to zero?
 bool is_rounding(const Witness& top);

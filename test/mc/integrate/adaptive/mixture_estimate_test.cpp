@@ -20,9 +20,9 @@ MixtureSums sums_of(double value, double spread, std::uint64_t n, int components
     sums.channels = {{n * replicate_count, value * count * replicate_count, 0}};
     return sums;
 }
-// Standard error of the mean of what sums_of() makes with a spread of 1, and one standard deviation of that error above.
+// Standard error of the mean of what sums_of() makes with a spread of 1, and half a standard deviation of that error above.
 double unit_error() {
-    const double caution = 1 + 1 / std::sqrt(2.0 * (replicate_count - 1));
+    const double caution = 1 + 0.5 / std::sqrt(2.0 * (replicate_count - 1));
     double squares = 0;
     for (int r = 0; r < replicate_count; ++r) squares += std::pow(2.0 * r / (replicate_count - 1) - 1, 2);
     return caution * std::sqrt(squares / (replicate_count - 1) / replicate_count);
@@ -47,6 +47,9 @@ TEST(MixtureEstimate, MeanAndErrorOfTheReplicates) {
     EXPECT_NEAR(estimate.error_ratio({}), 0.1 * unit_error() / 3, 1e-9);
     EXPECT_EQ(estimate.expected_rest({.absolute_error = 1}), 0);
     EXPECT_GT(estimate.expected_rest({.relative_error = 1e-3}), 8 * 64);
+    const double ratio = 0.1 * unit_error() / 0.003;
+    EXPECT_NEAR(estimate.expected_rest({.relative_error = 1e-3}, 0.5),
+                static_cast<double>(estimate.evaluations()) * (ratio * ratio - 1), 1e-6);
 }
 
 // Twice the points may lower the error by 2^1.5; what falls faster is held up, by a factor of three at most.

@@ -174,6 +174,12 @@ TEST(Evidence, PolesCountOnce) {
     EXPECT_NEAR(errors.back(), errors.front(), 0.1 * errors.front());
 }
 
+// Notes that say that a component is measured against the integral of |f|.
+std::ptrdiff_t count_of_absolute(const IntegrationResult& r) {
+    return std::ranges::count_if(
+        r.notes, [](const std::string& note) { return note.find("integral of |f|") != std::string::npos; });
+}
+
 TEST(Evidence, RelativeErrorsOfVectorsWithZeros) {
     const Integrand moments = Integrand::vector_valued(3, [](std::span<const double> x, std::span<double> y) {
         const double g = std::exp(-x[0] * x[0] - x[1] * x[1]);
@@ -187,14 +193,14 @@ TEST(Evidence, RelativeErrorsOfVectorsWithZeros) {
         const IntegrationResult r =
             integrate(moments, plane, Method::named(method), {.relative_error = 1e-2});
         EXPECT_TRUE(r.converged()) << method << "\n" << r;
-        EXPECT_EQ(r.notes.size(), 2u) << method;
+        EXPECT_EQ(count_of_absolute(r), 2) << method;
         for (std::size_t c = 1; c < 3; ++c)
             EXPECT_LE(std::abs(r.value[c]), 5 * r.standard_error[c] + 1e-12) << method;
     }
     const IntegrationResult norm =
         integrate(moments, plane, Method(), {.relative_error = 1e-2, .norm = ErrorNorm::vector});
     EXPECT_TRUE(norm.converged()) << norm;
-    EXPECT_TRUE(norm.notes.empty());
+    EXPECT_EQ(count_of_absolute(norm), 0);
 }
 
 TEST(Evidence, TheLimitOfEvaluationsHolds) {

@@ -1,0 +1,68 @@
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "montelux/mc/integrate/infinity.h"
+#include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/witness/ridge.h"
+
+namespace montelux {
+namespace {
+
+const Domain plane{{-infinity, infinity}, {-infinity, infinity}};
+
+struct Ridge {
+    std::string name;
+    bool diverges;
+    double (*f)(std::span<const double> x);
+};
+double ridge_of(double across, double along) { return std::exp(-across * across) * along; }
+const std::vector<Ridge> ridges{
+    {"constant", true, [](std::span<const double> x) { return ridge_of(x[0] - x[1], 1); }},
+    {"beside the diagonal", true, [](std::span<const double> x) { return ridge_of(x[0] - x[1] - 1, 1); }},
+    {"other diagonal", true, [](std::span<const double> x) { return ridge_of(x[0] + x[1], 1); }},
+    {"1 / x", true,
+     [](std::span<const double> x) { return ridge_of(x[0] - x[1], 1 / (1 + std::abs(x[0]))); }},
+    {"heavy sides", true, [](std::span<const double> x) { return 1 / (1 + std::pow(x[0] - x[1], 2)); }},
+    {"x^-1.2", false,
+     [](std::span<const double> x) { return ridge_of(x[0] - x[1], std::pow(1 + std::abs(x[0]), -1.2)); }},
+    {"x^-2", false, [](std::span<const double> x) { return ridge_of(x[0] - x[1], 1 / (1 + x[0] * x[0])); }},
+    {"thinner and thinner", false,
+     [](std::span<const double> x) { return ridge_of((x[0] - x[1]) * (1 + x[0] * x[0]), 1); }},
+    {"long", false, [](std::span<const double> x) {
+         return ridge_of(x[0] - x[1], std::exp(-1e-6 * (x[0] + x[1]) * (x[0] + x[1])));
+     }}};
+
+TEST(Ridge, MassesThatDoNotFall) {
+    for (const Ridge& ridge : ridges) {
+        const Evaluator evaluator(Integrand(ridge.f), plane);
+        RawValues raw(evaluator);
+        const double far = std::exp2(-24), other = ridge.name == "other diagonal" ? 1 - far : far;
+        EXPECT_EQ(ridge_diverges(raw, {far, other}, [](const auto& row) { return row[0]; }), ridge.diverges)
+            << ridge.name;
+        EXPECT_LT(raw.evaluations(), 700u) << ridge.name;
+    }
+}
+
+TEST(Ridge, OnlyFarOutOfInfiniteRanges) {
+    const Domain half{{0, infinity}, {0, 1}};
+    EXPECT_TRUE(is_far_out(half, std::vector{1 - 1e-6, 0.5}));
+    EXPECT_FALSE(is_far_out(half, std::vector{1e-6, 0.5}));
+    EXPECT_FALSE(is_far_out(half, std::vector{0.5, 1 - 1e-6}));
+    EXPECT_FALSE(is_far_out(Domain::unit_cube(2), std::vector{1e-6, 0.5}));
+}
+
+TEST(Ridge, DivergenceIsToldAndConvergenceIsNotDenied) {
+    for (const Ridge& ridge : ridges) {
+        const IntegrationResult r =
+            integrate(Integrand(ridge.f), plane, Method(), {.relative_error = 1e-2, .evaluations = 100'000},
+                      {.threads = 1});
+        EXPECT_EQ(r.stop == StopReason::diverges, ridge.diverges) << ridge.name << ": " << to_string(r);
+        EXPECT_FALSE(ridge.diverges && r.converged()) << ridge.name;
+    }
+}
+
+} // namespace
+} // namespace montelux
