@@ -95,12 +95,14 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             Witness peak = witness;
             measure(raw, peak, magnitude);
             if (!is_rounding(peak)) look_.peaks.push_back(std::move(peak));
-            const PoleReport pole = search_pole(raw, witness, c);
+            // Far out in several variables ridges look like poles.
+            const bool far = witness.u.size() > 1 && is_far_out(evaluator_.domain(), witness.u);
+            const PoleReport pole =
+                far ? PoleReport{ridge_diverges(raw, witness.u, magnitude), 0, witness.u, {}}
+                    : search_pole(raw, witness, c);
             known = {pole.u, value, pole.unresolved};
-            const bool diverges = is_far_out(evaluator_.domain(), pole.u)
-                                      ? ridge_diverges(raw, pole.u, magnitude)
-                                      : pole.diverges;
-            if (diverges && divergence_.empty()) divergence_ = place(pole.u);
+            if (pole.diverges && (far || !is_far_out(evaluator_.domain(), pole.u)) && divergence_.empty())
+                divergence_ = place(pole.u);
             note_slow(pole.slow);
             evaluations_ += raw.evaluations();
         }

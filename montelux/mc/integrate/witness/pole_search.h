@@ -13,8 +13,8 @@ struct PoleReport {
     // Integral of |g| over the points that doubles do not tell from the pole, in one variable; 0 without a pole.
     double unresolved = 0;
     std::vector<double> u; // where
-    SlowShells
-        slow; // around a pole of several variables, if masses fall slowly towards it; else without shells
+    // Around a pole of several variables, if masses fall slowly towards it; else without shells.
+    SlowShells slow;
 };
 
 // Follows |g_component| from a witness to the greatest value along each variable, and compares dyadic shells around

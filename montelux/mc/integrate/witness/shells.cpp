@@ -15,8 +15,8 @@ constexpr double harmonic = (outer_from + outer_to) / (inner_from + inner_to);
 constexpr double noise = 0.93; // factor for masses that oscillate
 constexpr double steady =
     0.25; // least ratio of the masses of the last third of the inner range and of that before
-constexpr double least_growth =
-    3; // of |g| over three shells towards a pole, and four times that for each variable more
+// Growth of |g| over three shells towards a pole; four times that for each variable more.
+constexpr double least_growth = 3;
 constexpr double coarsest = 6; // least exponent of the innermost shells
 
 std::vector<double> exponents(double from, double to) {
