@@ -223,7 +223,7 @@ class AdaptiveEstimator final : public Estimator {
     bool is_hit_indicator() const {
         return trainer_.flat_where_nonzero() && trainer_.nonzero() >= enough_hits;
     }
-    // At jumps across a surface errors of low-discrepancy points fall more slowly (He and Wang 2015, "On the convergence
+    // Errors of low-discrepancy points fall more slowly at jumps across a surface (He and Wang 2015, "On the convergence
     // rate of randomized quasi-Monte Carlo for discontinuous functions").
     double expected_rest_of_indicator(const StepRequest& request) const {
         const double n = problem_.evaluator.dimensions();

@@ -68,7 +68,7 @@ class CubatureVerification {
     // the first check.
     double correlation(std::size_t a, std::size_t b) const;
     bool knows_correlations() const { return residual_.full() && residual_.count() > 1; }
-    // Of the last check.
+    // Number of points of the last check.
     std::uint64_t points() const { return checked_points_; }
     // Did so few points fall into the part that holds half of the integral, by the rules, that other such
     // parts may have been missed?

@@ -26,7 +26,7 @@ Witness climb(RawValues& raw, Witness top, const Magnitude& magnitude);
 // origin of the cube. `finer`: further bisections.
 void measure(RawValues& raw, Witness& top, const Magnitude& magnitude, int finer = 0);
 
-// Was the value measured that only a few neighbouring numbers have, as where a pole's distance is rounded to zero?
+// Tells a value that only a few neighbouring numbers have, as where a pole's distance is rounded to zero, from a peak.
 bool is_rounding(const Witness& top);
 
 // Lower bound on the integral of |g| over a peak of this value that points of density q have hardly seen: fewer than

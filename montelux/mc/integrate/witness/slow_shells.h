@@ -21,7 +21,7 @@ struct SlowShells {
     std::vector<double> exponents;          // k
 
     int codimension() const;
-    // Are these shells slow for a component, and all of its values finite?
+    // Whether masses of a component fall slowly, and all of its values are finite.
     bool is_slow(std::size_t component) const;
 };
 
