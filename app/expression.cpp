@@ -1,9 +1,9 @@
 #include "app/expression.h"
 
+#include "app/formula_landmarks.h"
 #include "app/usage_error.h"
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -231,45 +231,14 @@ Formulas::Formulas(const std::vector<std::string>& texts, const std::vector<std:
 int Formulas::count() const { return static_cast<int>(pool_->texts.size()); }
 const std::vector<std::string>& Formulas::texts() const { return pool_->texts; }
 
-std::vector<double> Formulas::numbers() const {
-    std::vector<double> all;
-    auto add = [&](double v) {
-        for (double x : {v, -v})
-            if (std::isfinite(x) && std::ranges::find(all, x) == all.end()) all.push_back(x);
-    };
-    // A number or a name of one, at the beginning of the text; how long it is.
-    auto constant_at = [&](std::string_view text, double& value) -> std::size_t {
-        const char* const end = text.data() + text.size();
-        if (const auto [stop, error] = std::from_chars(text.data(), end, value); error == std::errc())
-            return static_cast<std::size_t>(stop - text.data());
-        const std::string name = name_at(std::string(text), 0);
-        if (name.empty() || std::ranges::find(pool_->variables, name) != pool_->variables.end()) return 0;
-        for (const auto& [known, number] : constants)
-            if (name == known) value = number;
+std::vector<std::vector<double>> Formulas::landmarks() const {
+    return formula_landmarks(pool_->texts, pool_->variables, [this](std::string_view name) {
         for (const auto& [known, number] : pool_->given)
-            if (name == known) value = number;
-        return std::isfinite(value) ? name.size() : 0;
-    };
-    for (const std::string& text : pool_->texts)
-        for (std::size_t i = 0; i < text.size();) {
-            double value = std::numeric_limits<double>::infinity();
-            std::size_t length = text[i] == '-' ? 0 : constant_at(std::string_view(text).substr(i), value);
-            if (length == 0) {
-                i += std::max<std::size_t>(1, name_at(text, i).size());
-                continue;
-            }
-            if (i == 0 || text[i - 1] != '^') add(value);
-            i += length;
-            while (i + 1 < text.size() && (text[i] == '*' || text[i] == '/')) {
-                double next = std::numeric_limits<double>::infinity();
-                length = constant_at(std::string_view(text).substr(i + 1), next);
-                if (length == 0) break;
-                value = text[i] == '*' ? value * next : value / next;
-                add(value);
-                i += 1 + length;
-            }
-        }
-    return all;
+            if (name == known) return number;
+        for (const auto& [known, number] : constants)
+            if (name == known) return number;
+        return std::numeric_limits<double>::quiet_NaN();
+    });
 }
 
 void Formulas::operator()(const PointBatch& x, ValueBatch y) const {

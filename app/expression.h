@@ -27,9 +27,8 @@ class Formulas {
 
     int count() const;
     const std::vector<std::string>& texts() const;
-    // The constants of the formulas with both signs, each once: numbers, names of numbers, and products and quotients
-    // of these such as pi/4.
-    std::vector<double> numbers() const;
+    // Points near which the formulas may have features (formula_landmarks).
+    std::vector<std::vector<double>> landmarks() const;
     // Coordinate d of a point is the value of variable d.
     void operator()(const PointBatch& x, ValueBatch y) const;
     // The value of the first formula; one variable.

@@ -40,7 +40,7 @@ struct NamedIntegrand {
     Integrand::BatchFunction function;
     std::vector<std::string> names;
     std::shared_ptr<const DeviceFunction> compiled = nullptr; // on a device; null: there is none
-    std::vector<double> numbers = {};                         // that stand in the formulas
+    std::vector<std::vector<double>> landmarks = {};          // of the formulas (formula_landmarks)
 
     int count() const { return static_cast<int>(names.size()); }
 };

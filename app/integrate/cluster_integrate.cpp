@@ -52,7 +52,7 @@ SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
 void SharedIntegration::integrate(const IntegrationTask& task, const BatchFunction& f, const Work& work) {
     const int components = task.integrand.count();
     if (!shared_)
-        return work(Integrand::batch(f, components).with_landmarks(task.integrand.numbers), task.options);
+        return work(Integrand::batch(f, components).with_landmarks(task.integrand.landmarks), task.options);
 
     IntegrationOptions options = task.options;
     options.threads = shared_->threads();

@@ -118,13 +118,13 @@ int run(const IntegrateOptions& o) {
             logarithm.relative = integrate(f, task.domain, task.method, task.budget, options);
     };
     if (task.integrand.compiled)
-        work(Integrand::compiled(task.integrand.compiled).with_landmarks(task.integrand.numbers),
+        work(Integrand::compiled(task.integrand.compiled).with_landmarks(task.integrand.landmarks),
              task.options);
     else
 #ifdef MONTELUX_WITH_RENDER
         shared.integrate(task, evaluate, work);
 #else
-        work(Integrand::batch(evaluate, task.integrand.count()).with_landmarks(task.integrand.numbers),
+        work(Integrand::batch(evaluate, task.integrand.count()).with_landmarks(task.integrand.landmarks),
              task.options);
 #endif
     line.finish();

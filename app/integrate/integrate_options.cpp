@@ -157,12 +157,12 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
     for (std::string& text : formulas)
         if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
     Formulas parsed(formulas, variables, "", constants);
-    std::vector<double> numbers = parsed.numbers();
+    std::vector<std::vector<double>> landmarks = parsed.landmarks();
     NamedIntegrand made =
         o.device.empty()
             ? NamedIntegrand{std::move(parsed), formulas}
             : on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
-    made.numbers = std::move(numbers);
+    made.landmarks = std::move(landmarks);
     return made;
 }
 

@@ -90,13 +90,14 @@ class Integrand {
         other.landmarks_ = landmarks_;
         return other;
     }
-    // Returns this integrand with landmarks: coordinates at which it may have features, such as the numbers of a formula.
-    Integrand with_landmarks(std::vector<double> landmarks) const {
+    // Returns this integrand with landmarks: points near which it may have features, such as the numbers of a formula. Each
+    // has a coordinate for every variable.
+    Integrand with_landmarks(std::vector<std::vector<double>> landmarks) const {
         Integrand other = *this;
         other.landmarks_ = std::move(landmarks);
         return other;
     }
-    std::span<const double> landmarks() const { return landmarks_; }
+    std::span<const std::vector<double>> landmarks() const { return landmarks_; }
     const OnDevice& on_device() const { return on_device_; }
     // The same integrand, evaluated in this way on a device.
     Integrand with_device(OnDevice device) const {
@@ -122,7 +123,7 @@ class Integrand {
 
     BatchFunction function_;
     OnDevice on_device_{};
-    std::vector<double> landmarks_;
+    std::vector<std::vector<double>> landmarks_;
     int dimensions_ = 0;
     int components_;
 };

@@ -135,7 +135,7 @@ CubatureVerification::CubatureVerification(const Problem& problem, std::uint64_t
     : problem_(problem), points_(points), residual_(problem.evaluator.components(), problem.full_covariance),
       lowest_(static_cast<std::size_t>(problem.evaluator.components()), infinity),
       highest_(lowest_.size(), -infinity), next_(4 * points), shown_(lowest_.size(), 0.0),
-      drift_(lowest_.size(), 1.0), scattered_(lowest_.size(), 0.0) {}
+      drift_(lowest_.size(), 1.0), scattered_(lowest_.size(), 0.0), surprising_(lowest_.size(), 0) {}
 
 bool CubatureVerification::verified(std::span<const double> value) const {
     if (points_ == 0) return true;
@@ -287,14 +287,15 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
         // Once wrong, rules claim no smaller error than the points' own.
         slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
     }
-    checked_points_ = points;
-    enough_points_ = true;
-    for (std::size_t c = 0; request.targeted() && c < value.size(); ++c)
-        enough_points_ = enough_points_ && 2 * overlooked(c) <= 1.01 * request.tolerance(c, value[c]);
     points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);
     witnesses_ = std::move(check->surprises);
     for (const CubatureWitness& w : witnesses_)
         if (seen_.size() < most_seen) seen_.push_back(w);
+    note_scattered_surprises(regions);
+    checked_points_ = points;
+    enough_points_ = true;
+    for (std::size_t c = 0; request.targeted() && c < value.size(); ++c)
+        enough_points_ = enough_points_ && 2 * overlooked(c) <= 1.01 * request.tolerance(c, value[c]);
     disagrees_ = false;
     for (std::size_t c = 0; c < value.size(); ++c) {
         const double difference = check->difference[c], noise = check->standard_error[c];
@@ -317,6 +318,24 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     for (const CubatureWitness& w : witnesses_) of_regions.push_back(w.region);
     add_errors(regions, of_regions);
     return points + climbed;
+}
+
+void CubatureVerification::note_scattered_surprises(const CubatureRegions& regions) {
+    if (problem_.evaluator.dimensions() == 1) return;
+    for (std::size_t c = 0; c < scattered_.size(); ++c) {
+        std::vector<std::size_t> apart; // regions that do not touch one another
+        double sum = 0, count = 0;
+        for (const CubatureWitness& w : witnesses_) {
+            const double height = surprise(regions, w.region, c, w.value[c], tolerance_[c]);
+            if (height == 0) continue;
+            sum += height;
+            ++count;
+            if (std::ranges::none_of(apart, [&](std::size_t r) { return regions.touch(r, w.region); }))
+                apart.push_back(w.region);
+        }
+        surprising_[c] += apart.size();
+        if (count > 0 && surprising_[c] >= fewest_features && std::isfinite(sum)) scattered_[c] = sum / count;
+    }
 }
 
 void CubatureVerification::note_drift(std::span<const double> value) {
@@ -483,6 +502,7 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(drift_);
     state.put(static_cast<std::uint64_t>(features_));
     state.put(scattered_);
+    state.put_all(surprising_);
     state.put(checked_points_);
     state.put(enough_points_);
     state.put(unsurprised_);
@@ -533,6 +553,8 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     features_ = state.get_word();
     scattered_ = state.get_doubles();
     fits(scattered_, m);
+    surprising_ = state.get_all<std::uint64_t>();
+    if (surprising_.size() != m) throw Error("the saved state has another number of components");
     checked_points_ = state.get_word();
     enough_points_ = state.get<bool>();
     unsurprised_ = state.get<bool>();

@@ -52,7 +52,7 @@ Evidence::Evidence(Evaluator& evaluator, std::uint64_t seed)
 
 Evidence::~Evidence() { evaluator_.keep_largest(nullptr); }
 
-void Evidence::look(std::span<const double> landmarks, std::uint64_t most_evaluations) {
+void Evidence::look(std::span<const std::vector<double>> landmarks, std::uint64_t most_evaluations) {
     look_ = first_look(evaluator_, {landmarks, most_evaluations, seed_});
     evaluations_ += look_.evaluations;
     divergence_ = look_.divergence;
@@ -94,13 +94,15 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             const Magnitude magnitude = [c](const std::vector<double>& row) { return std::abs(row[c]); };
             Witness peak = witness;
             measure(raw, peak, magnitude);
-            if (!is_rounding(peak)) look_.peaks.push_back(std::move(peak));
+            // A peak narrower than doubles can resolve holds about as much as their spacing does at its height.
+            const double narrow = is_rounding(peak) ? value * peak.volume : 0;
+            if (narrow == 0) look_.peaks.push_back(std::move(peak));
             // Far out in several variables ridges look like poles.
             const bool far = witness.u.size() > 1 && is_far_out(evaluator_.domain(), witness.u);
             const PoleReport pole =
                 far ? PoleReport{ridge_diverges(raw, witness.u, magnitude), 0, witness.u, {}}
                     : search_pole(raw, witness, c);
-            known = {pole.u, value, pole.unresolved};
+            known = {pole.u, value, std::max(pole.unresolved, narrow)};
             if (pole.diverges && (far || !is_far_out(evaluator_.domain(), pole.u)) && divergence_.empty())
                 divergence_ = place(pole.u);
             note_slow(pole.slow);
@@ -174,7 +176,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         const double unresolved = std::max(examined_[c].unresolved, at_ends);
         if (unresolved > tolerance) {
             const std::string pole =
-                unresolved == at_ends ? "an end" : "the pole at " + place(examined_[c].u).substr(5);
+                unresolved == at_ends ? "an end" : "the peak or pole at " + place(examined_[c].u).substr(5);
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than doubles can tell", unresolved,
                           pole.c_str());

@@ -21,7 +21,7 @@ class Evidence {
     Evidence& operator=(const Evidence&) = delete;
 
     // Takes the first look, with at most so many evaluations; forgets an earlier one, whose evaluations still count.
-    void look(std::span<const double> landmarks, std::uint64_t most_evaluations);
+    void look(std::span<const std::vector<double>> landmarks, std::uint64_t most_evaluations);
     // Follows a change of the values' unit, by powers of two with these exponents, one per component. Largest values are
     // forgotten: an estimator that starts again meets them again.
     void rescale(std::span<const double> exponents);

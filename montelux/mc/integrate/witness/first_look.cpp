@@ -5,90 +5,51 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <numbers>
+#include <numeric>
 #include <utility>
 
+#include "montelux/mc/integrate/witness/ladder_path.h"
 #include "montelux/mc/integrate/witness/peak.h"
 #include "montelux/mc/integrate/witness/raw_values.h"
 #include "montelux/mc/integrate/witness/ridge.h"
 #include "montelux/mc/integrate/witness/shells.h"
-#include "montelux/mc/random/hash.h"
 
 namespace montelux {
 namespace {
 
 using Point = std::vector<double>;
 
-// Exponents of the distances of a ladder of points, in units of the cube's width.
-constexpr std::array<double, 6> ladder{3, 8, 15, 24, 36, 50};
 constexpr double suspicious = 0.2; // of the inner shells' masses beside the outer ones'
 constexpr double matters = 1e-3;   // of the greatest mass of a shell: a difference between two
 constexpr double outstanding = 16; // times the median of the look
 constexpr std::size_t most_peaks = 3, more_corners = 8;
-constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
-constexpr std::size_t most_anchors = 16; // of a variable
-
-struct Anchor {
-    double u, finest; // exponent of the smallest distance that the coordinate resolves
-};
-
-// A ladder towards a point: u_d = anchor_d + side_d reach_d 2^(-rate_d k) for the variables that move.
-struct Path {
-    std::vector<Anchor> anchors;
-    std::vector<double> side; // 0: the variable does not move
-    std::vector<double> reach;
-    std::vector<int> rates = {}; // empty: 1
-
-    int rate(std::size_t d) const { return side[d] == 0 ? 0 : rates.empty() ? 1 : rates[d]; }
-    // Shells at k have a volume of 2^(-k codimension).
-    int codimension() const {
-        int sum = 0;
-        for (std::size_t d = 0; d < side.size(); ++d) sum += rate(d);
-        return sum;
-    }
-    double finest() const {
-        double least = finest_at_origin;
-        for (std::size_t d = 0; d < side.size(); ++d)
-            if (side[d] != 0) least = std::min(least, (anchors[d].finest + std::log2(reach[d])) / rate(d));
-        return std::min(least, std::max(finest_inside, finest_at_origin / codimension()));
-    }
-    // Volume of the shell around the anchor; `across`: widths in the variables that do not move.
-    double volume(double exponent, const std::vector<double>& across) const {
-        double product = 1;
-        for (std::size_t d = 0; d < side.size(); ++d)
-            product *= side[d] != 0 ? reach[d] * std::exp2(-rate(d) * exponent) : across[d];
-        return product;
-    }
-    Point at(double exponent) const {
-        Point u(side.size());
-        for (std::size_t d = 0; d < u.size(); ++d)
-            u[d] = std::clamp(anchors[d].u + side[d] * reach[d] * off_grid * std::exp2(-rate(d) * exponent),
-                              std::numeric_limits<double>::min(), 1 - 0x1p-53);
-        return u;
-    }
-};
+constexpr int most_climbed = 8; // variables in which peaks are climbed and measured
 
 class Look {
   public:
     Look(const Evaluator& evaluator, const LookSettings& settings)
         : raw_(evaluator), settings_(settings), n_(static_cast<std::size_t>(evaluator.dimensions())),
-          largest_(static_cast<std::size_t>(evaluator.components()), 0.0) {
-        for (std::size_t d = 0; d < n_; ++d) anchors_.push_back(anchors_of(d));
-    }
+          paths_(evaluator.domain(), n_, settings.landmarks, settings.seed),
+          largest_(static_cast<std::size_t>(evaluator.components()), 0.0) {}
 
     FirstLook operator()() {
         const auto begin = std::chrono::steady_clock::now();
-        std::vector<Path> paths = n_ == 1 ? line_paths(0, {}) : joint_paths();
+        std::vector<LadderPath> paths = n_ == 1 ? paths_.along(0, {}) : paths_.joint();
         walk(paths);
         if (n_ > 1 && !look_.slow.empty()) walk(corner_paths());
         if (n_ > 1) {
+            find_peaks(deep_); // while evaluations are left to climb them
             for (std::size_t d = 0; d < n_ && affordable(4 * ladder.size()); ++d) {
                 // Through a generic point, where no other variable is near a pole of its own; then through the
                 // greatest value, where masses along a line say nothing of the integral.
-                walk(line_paths(d, generic_point(), true));
-                if (const Witness* top = best()) walk(line_paths(d, Point(top->u)), false);
+                walk(paths_.along(d, paths_.generic_point(), true));
+                if (const Witness* top = best()) walk(paths_.along(d, Point(top->u)), false);
             }
         }
-        find_peaks();
+        std::vector<std::size_t> all(look_.witnesses.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        find_peaks(all);
         look_.evaluations = raw_.evaluations();
         look_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         return std::move(look_);
@@ -98,135 +59,18 @@ class Look {
     bool affordable(std::size_t points) const {
         return raw_.evaluations() + points <= settings_.most_evaluations;
     }
-    double random() {
-        return static_cast<double>(hash_key(settings_.seed, 0x6c6f6f6b, drawn_++) >> 11) * 0x1p-53;
-    }
-
-    // Ends first, then the centre, the origin and the landmarks.
-    std::vector<Anchor> anchors_of(std::size_t d) const {
-        const Domain& domain = raw_.evaluator().domain();
-        const std::span<const Range> ranges = domain.ranges();
-        if (ranges.empty()) return {{0, finest_inside}, {1, finest_inside}, {0.5, finest_inside}};
-        const Range range = ranges[d];
-        std::vector<Anchor> anchors;
-        for (double u : {0.0, 1.0, 0.5}) anchors.push_back({u, finest_exponent(domain, d, u)});
-        std::vector<double> places(settings_.landmarks.begin(), settings_.landmarks.end());
-        places.insert(places.begin(), 0.0);
-        std::vector<double> known;
-        for (double x : places) {
-            if (!(x > range.lower && x < range.upper) || anchors.size() >= most_anchors) continue;
-            PointBuffer at(1, static_cast<int>(n_)), u(1, static_cast<int>(n_));
-            for (std::size_t e = 0; e < n_; ++e) at(0, static_cast<int>(e)) = x;
-            std::array<double, 1> volume{1};
-            domain.inverse(at, u, volume);
-            const double here = u.view()(0, static_cast<int>(d));
-            const bool near =
-                std::ranges::any_of(anchors, [&](const Anchor& a) { return std::abs(a.u - here) < 0x1p-50; });
-            if (!near && here > 0 && here < 1) anchors.push_back({here, finest_exponent(domain, d, here)});
-        }
-        return anchors;
-    }
-
-    // Both sides of each anchor of a variable, the others fixed; or of its ends alone.
-    std::vector<Path> line_paths(std::size_t d, const Point& through, bool ends = false) const {
-        std::vector<Path> paths;
-        for (std::size_t i = 0; i < anchors_[d].size() && (!ends || i < 2); ++i)
-            for (double side : {1.0, -1.0}) {
-                const double r = reach(anchors_[d][i].u, side);
-                if (r == 0) continue;
-                Path path{{}, std::vector<double>(n_, 0.0), std::vector<double>(n_, 0.0)};
-                for (std::size_t e = 0; e < n_; ++e)
-                    path.anchors.push_back(e == d ? anchors_[d][i] : Anchor{through[e], finest_inside});
-                path.side[d] = side;
-                path.reach[d] = r;
-                paths.push_back(std::move(path));
-            }
+    // Further ladders where a corner is slow: to it, and to more corners of many variables.
+    std::vector<LadderPath> corner_paths() {
+        std::vector<LadderPath> paths;
+        for (const SlowShells& slow : look_.slow)
+            if (slow.codimension() == static_cast<int>(n_))
+                for (LadderPath& path : paths_.of_two_scales(slow.place)) paths.push_back(std::move(path));
+        for (std::size_t i = 0; n_ > 3 && i < more_corners; ++i) paths.push_back(paths_.to_random_corner());
         return paths;
-    }
-
-    // All variables at once: the same anchor in each, each corner of up to three variables, and some with an anchor of its
-    // own in each variable.
-    std::vector<Path> joint_paths() {
-        std::vector<Path> paths;
-        std::size_t most = 0;
-        for (const auto& anchors : anchors_) most = std::max(most, anchors.size());
-        const std::size_t mixed = n_ <= 3 ? 16 : 8, corners = n_ <= 3 ? std::size_t{1} << n_ : 0;
-        for (std::size_t i = 0; i < most + mixed; ++i) {
-            Path path;
-            for (std::size_t d = 0; d < n_; ++d) {
-                const std::size_t count = anchors_[d].size();
-                const std::size_t which =
-                    i < most ? std::min(i, count - 1)
-                    : i < most + corners
-                        ? (i - most) >> d & 1
-                        : std::min(count - 1,
-                                   static_cast<std::size_t>(random() * static_cast<double>(count)));
-                const Anchor anchor = anchors_[d][which];
-                const double side = anchor.u == 0                ? 1
-                                    : anchor.u == 1              ? -1
-                                    : i < most || random() < 0.5 ? 1
-                                                                 : -1;
-                path.anchors.push_back(anchor);
-                path.side.push_back(side);
-                // The first ones along diagonals, where ridges are; the others in directions of their own.
-                path.reach.push_back(reach(anchor.u, side) * (i < most ? 1 : 0.5 + 0.5 * random()));
-            }
-            if (i < most && paths.size() < most) {
-                Path opposite = path;
-                bool inside = false;
-                for (std::size_t d = 0; d < n_; ++d)
-                    if (path.anchors[d].u != 0 && path.anchors[d].u != 1) {
-                        inside = true;
-                        opposite.side[d] = -path.side[d];
-                        opposite.reach[d] =
-                            std::min(opposite.reach[d], reach(path.anchors[d].u, -path.side[d]));
-                    }
-                if (inside) paths.push_back(std::move(opposite));
-            }
-            paths.push_back(std::move(path));
-        }
-        return paths;
-    }
-
-    Path to_corner(const std::vector<double>& place, std::vector<int> rates = {}) const {
-        Path path{{}, {}, std::vector<double>(n_, 1.0), std::move(rates)};
-        for (std::size_t d = 0; d < n_; ++d) {
-            path.anchors.push_back(anchors_[d][place[d] == 0 ? 0 : 1]);
-            path.side.push_back(place[d] == 0 ? 1 : -1);
-        }
-        return path;
-    }
-
-    // Further ladders where a corner is slow: to it, on which one variable falls with the square of the others or the
-    // others with its, since x + y^2 has two scales; and to more corners of many variables.
-    std::vector<Path> corner_paths() {
-        std::vector<Path> paths;
-        for (const SlowShells& slow : look_.slow) {
-            if (slow.codimension() < static_cast<int>(n_)) continue;
-            for (std::size_t one = 0; one < n_; ++one)
-                for (int rate : {1, 2}) {
-                    if (n_ == 2 && rate == 2) continue; // the other variable's with 1
-                    std::vector<int> rates(n_, 3 - rate);
-                    rates[one] = rate;
-                    paths.push_back(to_corner(slow.place, std::move(rates)));
-                }
-        }
-        for (std::size_t i = 0; n_ > 3 && i < more_corners; ++i) {
-            Point place(n_);
-            for (double& u : place) u = random() < 0.5;
-            paths.push_back(to_corner(place));
-        }
-        return paths;
-    }
-
-    Point generic_point() {
-        Point u(n_);
-        for (double& c : u) c = 0.25 + 0.5 * random();
-        return u;
     }
 
     // Evaluates the ladders and keeps what they saw. `tests`: whether their masses fall.
-    void walk(const std::vector<Path>& paths, bool tests = true) {
+    void walk(const std::vector<LadderPath>& paths, bool tests = true) {
         std::vector<Point> points;
         std::vector<double> volumes;
         std::size_t walked = 0;
@@ -234,11 +78,15 @@ class Look {
             const double finest = std::min(paths[walked].finest(), ladder.back());
             for (double k : ladder) {
                 points.push_back(paths[walked].at(k * finest / ladder.back()));
-                volumes.push_back(paths[walked].volume(k * finest / ladder.back(), widths_of(paths[walked])));
+                volumes.push_back(
+                    paths[walked].volume(k * finest / ladder.back(), paths_.widths(paths[walked])));
             }
         }
         const auto rows = raw_(points);
-        for (std::size_t i = 0; i < points.size(); ++i) keep(points[i], rows[i], volumes[i], true);
+        for (std::size_t i = 0; i < points.size(); ++i)
+            if (keep(points[i], rows[i], volumes[i], true) && i % ladder.size() > 0 &&
+                is_inside(paths[i / ladder.size()]))
+                deep_.push_back(look_.witnesses.size() - 1);
         refine(paths, walked, rows, volumes);
         if (!tests || !look_.divergence.empty()) return;
         for (std::size_t p = 0; p < walked; ++p)
@@ -255,7 +103,7 @@ class Look {
 
     // Keeps a ladder whose masses fall slowly. In several variables the smaller values of it and of another one to the
     // same face or corner, at whose points densities are compared: the first may lie on a ridge.
-    void note_slow(const Path& path, const std::vector<std::vector<double>>& rows, std::size_t first) {
+    void note_slow(const LadderPath& path, const std::vector<std::vector<double>>& rows, std::size_t first) {
         SlowShells slow{std::vector<double>(n_, SlowShells::free), {}, {}};
         for (std::size_t d = 0; d < n_; ++d) {
             if (path.side[d] == 0) continue;
@@ -275,11 +123,11 @@ class Look {
         if (!any_slow(slow)) return;
         if (n_ > 1) {
             if (!affordable(ladder.size())) return;
-            Path other = path;
-            const Point through = generic_point();
+            LadderPath other = path;
+            const Point through = paths_.generic_point();
             for (std::size_t d = 0; d < n_; ++d)
-                (path.side[d] != 0 ? other.reach[d] *= 0.3 + 0.7 * random()
-                                   : other.anchors[d].u = through[d]);
+                if (path.side[d] == 0) other.anchors[d].u = through[d];
+            paths_.vary(other);
             std::vector<Point> points;
             for (double k : slow.exponents) points.push_back(other.at(k));
             const auto seen = raw_(points);
@@ -302,7 +150,7 @@ class Look {
 
     // Looks between shells of a ladder that differ by masses which matter: a rise or a peak may lie there. What lies
     // outside of 2^-8 other points see.
-    void refine(const std::vector<Path>& paths, std::size_t walked,
+    void refine(const std::vector<LadderPath>& paths, std::size_t walked,
                 const std::vector<std::vector<double>>& rows, const std::vector<double>& volumes) {
         double most = 0;
         for (std::size_t i = 0; i < rows.size(); ++i) most = std::max(most, size(rows[i]) * volumes[i]);
@@ -316,7 +164,7 @@ class Look {
                 std::vector<double> of_between;
                 for (double k = ladder[i] + 1; k < ladder[i + 1]; ++k) {
                     between.push_back(paths[p].at(k * finest));
-                    of_between.push_back(paths[p].volume(k * finest, widths_of(paths[p])));
+                    of_between.push_back(paths[p].volume(k * finest, paths_.widths(paths[p])));
                 }
                 if (!affordable(between.size())) return;
                 const auto seen = raw_(between);
@@ -324,34 +172,28 @@ class Look {
             }
     }
 
-    // Scales at which the coordinates that do not move were found: distances from the nearest of their anchors.
-    std::vector<double> widths_of(const Path& path) const {
-        std::vector<double> widths(n_, 1.0);
-        for (std::size_t d = 0; d < n_; ++d)
-            if (path.side[d] == 0)
-                for (const Anchor& a : anchors_[d])
-                    widths[d] = std::min(widths[d], std::abs(path.anchors[d].u - a.u));
-        return widths;
-    }
-
     std::size_t components() const { return static_cast<std::size_t>(raw_.evaluator().components()); }
 
-    // What lies beyond the finest shell, if masses fall by a power.
-    void note_unresolved(const Path& path, const std::vector<std::vector<double>>& rows, std::size_t first,
-                         std::size_t c) {
+    // Notes what lies beyond the finest shell: at infinity by shells farther out, else if masses fall by a power.
+    void note_unresolved(const LadderPath& path, const std::vector<std::vector<double>>& rows,
+                         std::size_t first, std::size_t c) {
         if (path.finest() > finest_inside) return;
         const double finest = std::min(path.finest(), ladder.back()) / ladder.back();
         const double from = ladder[3] * finest, to = ladder[5] * finest;
         const double outer = std::abs(rows[first + 3][c]) * std::exp2(-from);
         const double inner = std::abs(rows[first + 5][c]) * std::exp2(-to);
         const double fall = std::log2(outer / inner) / (to - from); // 1 - power
-        if (!(fall > 0 && fall < 0.9)) return;
+        const double beyond = goes_to_infinity(path)   ? mass_beyond(path, c, to)
+                              : fall > 0 && fall < 0.9 ? 1 / fall
+                                                       : 0;
+        const double unresolved = inner * path.reach[0] * off_grid * beyond;
+        if (!(unresolved > 0)) return;
         look_.unresolved.resize(components(), 0.0);
-        look_.unresolved[c] += inner * path.reach[0] * off_grid / fall;
+        look_.unresolved[c] += unresolved;
     }
 
-    bool is_suspicious(const Path& path, const std::vector<std::vector<double>>& rows, std::size_t first,
-                       std::size_t c) const {
+    bool is_suspicious(const LadderPath& path, const std::vector<std::vector<double>>& rows,
+                       std::size_t first, std::size_t c) const {
         const double finest = std::min(path.finest(), ladder.back());
         auto mass = [&](std::size_t i) {
             const double g = std::abs(rows[first + i][c]);
@@ -362,8 +204,15 @@ class Look {
         return inner > 0 && (std::isinf(inner) || inner >= suspicious * outer);
     }
 
+    // Does no variable that moves go to an end?
+    static bool is_inside(const LadderPath& path) {
+        for (std::size_t d = 0; d < path.side.size(); ++d)
+            if (path.side[d] != 0 && (path.anchors[d].u == 0 || path.anchors[d].u == 1)) return false;
+        return true;
+    }
+
     // Do all variables that move go to infinity?
-    bool goes_to_infinity(const Path& path) const {
+    bool goes_to_infinity(const LadderPath& path) const {
         const std::span<const Range> ranges = raw_.evaluator().domain().ranges();
         if (ranges.empty()) return false;
         for (std::size_t d = 0; d < n_; ++d)
@@ -375,14 +224,13 @@ class Look {
 
     // Shells at infinity, farther out than points of the unit cube can be: |f| at distances 2^k, times the square of the
     // volume that these have, so that masses are those of shells of width 2^-k.
-    bool diverges_at_infinity(const Path& path, std::size_t c) {
-        const int codimension = path.codimension();
+    ShellValues values_far_out(const LadderPath& path, std::size_t c) {
         PointBuffer u(1, static_cast<int>(n_)), x(1, static_cast<int>(n_));
         for (std::size_t d = 0; d < n_; ++d)
             u(0, static_cast<int>(d)) = path.side[d] == 0 ? path.anchors[d].u : 0.5;
         std::array<double, 1> volume{1};
         raw_.evaluator().domain().map(u, x, volume);
-        const ShellValues values = [&](std::span<const double> exponents) {
+        return [this, path, c, x](std::span<const double> exponents) {
             std::vector<Point> points;
             for (double k : exponents) {
                 points.emplace_back(n_);
@@ -394,31 +242,53 @@ class Look {
             const auto rows = raw_.at(points);
             std::vector<double> g;
             for (std::size_t i = 0; i < rows.size(); ++i)
-                g.push_back(std::abs(rows[i][c]) * std::exp2(2 * codimension * exponents[i]));
+                g.push_back(std::abs(rows[i][c]) * std::exp2(2 * path.codimension() * exponents[i]));
             return g;
         };
-        return masses_diverge(values, finest_at_origin / codimension, codimension);
     }
 
-    bool diverges(const Path& path, std::size_t c) {
+    bool diverges_at_infinity(const LadderPath& path, std::size_t c) {
+        const double finest = finest_at_origin / path.codimension();
+        const ShellValues values = values_far_out(path, c);
+        // Infinite from half of the way on, by overflow.
+        const std::array<double, 3> far_out{0.5 * finest, 0.75 * finest, finest};
+        const std::vector<double> g = values(far_out);
+        return std::ranges::all_of(g, [](double v) { return std::isinf(v); }) ||
+               masses_diverge(values, finest, path.codimension());
+    }
+
+    // Mass that lies farther out than the shell at `finest`, in units of that shell's; 0 where that has none.
+    double mass_beyond(const LadderPath& path, std::size_t c, double finest) {
+        constexpr double step = 2;
+        std::vector<double> exponents;
+        for (double k = finest; k < finest_at_origin; k += step) exponents.push_back(k);
+        const std::vector<double> g = values_far_out(path, c)(exponents);
+        double sum = 0.5;
+        for (std::size_t i = 1; i < g.size(); ++i)
+            if (const double mass = g[i] / g[0] * std::exp2(finest - exponents[i]); !std::isnan(mass))
+                sum += mass;
+        return g[0] > 0 ? step * std::numbers::ln2 * sum : 0;
+    }
+
+    bool diverges(const LadderPath& path, std::size_t c) {
         if (path.codimension() == 1) return diverges_along(path, c);
         // Other directions, since a diagonal may be a ridge.
         for (int i = 0; i < 2; ++i) {
-            Path other = path;
-            for (std::size_t d = 0; d < n_; ++d) other.reach[d] *= 0.3 + 0.7 * random();
+            LadderPath other = path;
+            paths_.vary(other);
             if (!diverges_along(other, c)) return ridge_diverges_along(path, c);
         }
         return diverges_along(path, c);
     }
 
-    bool ridge_diverges_along(const Path& path, std::size_t c) {
+    bool ridge_diverges_along(const LadderPath& path, std::size_t c) {
         constexpr double far_out = 20; // exponent
         return goes_to_infinity(path) && diverges_along(path, c) &&
                ridge_diverges(raw_, path.at(far_out),
                               [c](const std::vector<double>& row) { return std::abs(row[c]); });
     }
 
-    bool diverges_along(const Path& path, std::size_t c) {
+    bool diverges_along(const LadderPath& path, std::size_t c) {
         if (goes_to_infinity(path)) return diverges_at_infinity(path, c);
         const ShellValues values = [&](std::span<const double> exponents) {
             std::vector<Point> points;
@@ -430,7 +300,7 @@ class Look {
         return masses_diverge(values, path.finest(), path.codimension());
     }
 
-    std::string place_of(const Path& path) const {
+    std::string place_of(const LadderPath& path) const {
         const Domain& domain = raw_.evaluator().domain();
         PointBuffer u(1, static_cast<int>(n_)), x(1, domain.dimensions());
         for (std::size_t d = 0; d < n_; ++d)
@@ -453,13 +323,15 @@ class Look {
         return domain.ranges().empty() ? place + " (variables of the unit cube)" : place;
     }
 
-    // `ordinary`: a point of a ladder as it is, which tells what sizes values usually have.
-    void keep(const Point& u, const std::vector<double>& row, double volume, bool ordinary) {
+    // `ordinary`: a point of a ladder as it is, which tells what sizes values usually have. False for values that are not
+    // finite.
+    bool keep(const Point& u, const std::vector<double>& row, double volume, bool ordinary) {
         for (std::size_t c = 0; c < row.size(); ++c)
-            if (!std::isfinite(row[c])) return;
+            if (!std::isfinite(row[c])) return false;
         for (std::size_t c = 0; c < row.size(); ++c) largest_[c] = std::max(largest_[c], std::abs(row[c]));
         if (ordinary) ordinary_.push_back(look_.witnesses.size());
         look_.witnesses.push_back({u, row, volume});
+        return true;
     }
     // Size of a value: the sum over components, each relative to the largest seen.
     double size(const std::vector<double>& row) const {
@@ -474,13 +346,15 @@ class Look {
         return top == look_.witnesses.end() ? nullptr : &*top;
     }
 
-    void find_peaks() {
+    // Climbs from those of these witnesses that stand out.
+    void find_peaks(const std::vector<std::size_t>& from) {
         if (ordinary_.empty() || n_ > most_climbed) return;
         std::vector<double> sizes;
         for (std::size_t i : ordinary_) sizes.push_back(size(look_.witnesses[i].value));
         std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
         const double median = sizes[sizes.size() / 2];
-        std::vector<Witness> starts = look_.witnesses;
+        std::vector<Witness> starts;
+        for (std::size_t i : from) starts.push_back(look_.witnesses[i]);
         std::ranges::sort(starts, std::greater{}, [&](const Witness& w) { return size(w.value); });
         for (const Witness& start : starts) {
             if (look_.peaks.size() == most_peaks || !affordable(40 * n_)) break;
@@ -510,10 +384,10 @@ class Look {
     RawValues raw_;
     LookSettings settings_;
     std::size_t n_;
-    std::vector<std::vector<Anchor>> anchors_;
+    LadderPaths paths_;
     std::vector<double> largest_;       // |g| of each component
     std::vector<std::size_t> ordinary_; // witnesses
-    std::uint64_t drawn_ = 0;
+    std::vector<std::size_t> deep_;     // witnesses, of these those close to a place inside
     FirstLook look_;
 };
 

@@ -30,8 +30,8 @@ struct FirstLook {
 };
 
 struct LookSettings {
-    // Coordinates at which a feature may lie, in any variable: the numbers of a formula.
-    std::span<const double> landmarks = {};
+    // Points near which a feature may lie, such as the numbers of a formula.
+    std::span<const std::vector<double>> landmarks = {};
     std::uint64_t most_evaluations = 1024;
     std::uint64_t seed = 0;
 };

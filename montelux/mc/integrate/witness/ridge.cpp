@@ -15,6 +15,7 @@ constexpr double not_falling = 0.8; // of the outermost mass beside the innermos
 constexpr double steady = 0.4;      // and of any other beside the next
 constexpr int finer = 4;            // further bisections of a width
 constexpr int climbs = 2;
+constexpr double same_shell = 4; // ratio of distances
 
 // The side towards an end at infinity; 0 where that is not near.
 double side_of(const Domain& domain, std::span<const double> u, std::size_t d) {
@@ -52,6 +53,12 @@ bool ridge_diverges(RawValues& raw, const std::vector<double>& u, const Magnitud
         }
         top.value = raw({top.u})[0];
         for (int k = 0; k < climbs; ++k) top = climb(raw, std::move(top), magnitude);
+        // What leads back out of the shell is the flank of a wide peak.
+        for (std::size_t d = 0; d < u.size(); ++d)
+            if (const double side = side_of(domain, u, d);
+                side != 0 &&
+                reach(top.u[d], side) > same_shell * reach(u[d], side) / nearest * std::exp2(-scales[i]))
+                return false;
         if (!(magnitude(top.value) > 0) || !std::isfinite(magnitude(top.value))) return false;
         measure(raw, top, magnitude, finer);
         if (is_rounding(top)) return false;

@@ -13,9 +13,9 @@ constexpr double outer_from = 0.35, outer_to = 0.5, inner_from = 0.75, inner_to 
 // Ratio of the means for masses that fall like 1 / k.
 constexpr double harmonic = (outer_from + outer_to) / (inner_from + inner_to);
 constexpr double noise = 0.93; // factor for masses that oscillate
-constexpr double steady =
+constexpr double steady_ratio =
     0.25; // least ratio of the masses of the last third of the inner range and of that before
-// Growth of |g| over three shells towards a pole; four times that for each variable more.
+// Growth of |g| over three octaves towards a pole; four times that for each variable more.
 constexpr double least_growth = 3;
 constexpr double coarsest = 6; // least exponent of the innermost shells
 
@@ -65,8 +65,8 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     double sum_outer = 0, sum_inner = 0, innermost = 0, before = 0;
     bool rounded = false;
     for (std::size_t i = 0; i < shells; ++i) {
-        if (std::isnan(g_outer[i])) return false;
-        rounded = rounded || !std::isfinite(mass(g_inner[i], inner[i])) || g_inner[i] == 0;
+        rounded = rounded || std::isnan(g_outer[i]) || !std::isfinite(mass(g_inner[i], inner[i])) ||
+                  g_inner[i] == 0;
         sum_outer += mass(g_outer[i], outer[i]);
         sum_inner += mass(g_inner[i], inner[i]);
         if (i >= shells - shells / 3)
@@ -77,13 +77,15 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     // Infinite, zero or no number, by overflow or rounding or in truth: the shells up to there tell.
     if (rounded)
         return may_be_rounded && masses_diverge_until(values, last_value(values, finest), codimension, false);
-    // Values that no longer grow are those of a narrow peak. Over three shells those of a pole grow by 8^codimension or more,
-    // but for oscillations.
+    // Values that no longer grow are those of a narrow peak. Over three octaves those of a pole grow by 8^codimension or
+    // more, but for oscillations.
     const double last = std::max(g_inner[shells - 1], g_inner[shells - 2]),
                  earlier = std::max(g_inner[shells - 4], g_inner[shells - 5]);
+    const double octaves = std::min(3.0, inner[shells - 1] - inner[shells - 4]);
+    const double growth = std::pow(least_growth * std::exp2(2 * (codimension - 1)), octaves / 3);
     // Within the inner range, too: the outer one may lie beyond all that is there.
-    return sum_inner > 0 && last >= least_growth * std::exp2(2 * (codimension - 1)) * earlier &&
-           sum_inner >= noise * harmonic * sum_outer && innermost >= steady * before;
+    return sum_inner > 0 && last >= growth * earlier && sum_inner >= noise * harmonic * sum_outer &&
+           innermost >= steady_ratio * before;
 }
 
 } // namespace

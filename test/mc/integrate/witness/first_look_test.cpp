@@ -12,7 +12,7 @@
 namespace montelux {
 namespace {
 
-FirstLook look_at(const Integrand& f, const Domain& domain, std::vector<double> landmarks = {}) {
+FirstLook look_at(const Integrand& f, const Domain& domain, std::vector<std::vector<double>> landmarks = {}) {
     return first_look(Evaluator(f, domain), {.landmarks = landmarks, .seed = 1});
 }
 
@@ -37,7 +37,7 @@ TEST(FirstLook, FindsPeaksOfAnyWidthAtZeroAtEndsAndAtLandmarks) {
     EXPECT_EQ(look_at([](double x) { return std::exp(-1e4 * x); }, Domain::interval(0, 1)).peaks.size(), 1u);
     const auto shifted = [](double x) { return std::exp(-(x - 777) * (x - 777)); };
     EXPECT_TRUE(look_at(shifted, Domain::interval(-1e6, 1e6)).peaks.empty());
-    EXPECT_EQ(look_at(shifted, Domain::interval(-1e6, 1e6), {777}).peaks.size(), 1u);
+    EXPECT_EQ(look_at(shifted, Domain::interval(-1e6, 1e6), {{777}}).peaks.size(), 1u);
     const auto ball = [](std::span<const double> x) {
         double squares = 0;
         for (double v : x) squares += v * v;
@@ -80,13 +80,13 @@ TEST(FirstLook, NoDivergenceWhereValuesEnd) {
     for (const Domain& domain :
          {Domain::interval(1e-15, 1), Domain::interval(1e-30, 1), Domain::interval(1, 1e15)})
         EXPECT_TRUE(look_at(inverse, domain).divergence.empty());
-    EXPECT_TRUE(look_at([](double x) { return 1 / (x + 1e-14); }, Domain::interval(0, 1), {1e-14})
+    EXPECT_TRUE(look_at([](double x) { return 1 / (x + 1e-14); }, Domain::interval(0, 1), {{1e-14}})
                     .divergence.empty());
     EXPECT_TRUE(look_at([](double x) { return std::exp(-(x - 1e8) * (x - 1e8) / 2e6); },
-                        Domain::interval(-infinity, infinity), {1e8})
+                        Domain::interval(-infinity, infinity), {{1e8}})
                     .divergence.empty());
     EXPECT_EQ(look_at([](double x) { return std::abs(x) < 1000 ? 1.0 : 0.0; },
-                      Domain::interval(-infinity, infinity), {1000})
+                      Domain::interval(-infinity, infinity), {{1000}})
                   .divergence,
               "");
 }

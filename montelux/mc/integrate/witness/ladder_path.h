@@ -1,0 +1,72 @@
+// Ladders of points by which a first look walks towards the places where peaks and poles usually lie.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/domain.h"
+
+namespace montelux {
+
+// Exponents of the distances of a ladder of points, in units of the cube's width.
+inline constexpr std::array<double, 6> ladder{3, 8, 15, 24, 36, 50};
+
+struct Anchor {
+    double u, finest; // exponent of the smallest distance that the coordinate resolves
+};
+
+// A ladder towards a point: u_d = anchor_d + side_d reach_d 2^(-rate_d k) for the variables that move.
+struct LadderPath {
+    std::vector<Anchor> anchors;
+    std::vector<double> side; // 0: the variable does not move
+    std::vector<double> reach;
+    std::vector<int> rates = {}; // empty: 1
+
+    int rate(std::size_t d) const { return side[d] == 0 ? 0 : rates.empty() ? 1 : rates[d]; }
+    // Shells at k have a volume of 2^(-k codimension).
+    int codimension() const;
+    double finest() const;
+    // Volume of the shell around the anchor; `across`: widths in the variables that do not move.
+    double volume(double exponent, const std::vector<double>& across) const;
+    std::vector<double> at(double exponent) const;
+};
+
+// The ladders of one look. (seed, order of the calls) determine what is random.
+class LadderPaths {
+  public:
+    // `landmarks`: points near which features may lie; a coordinate outside of its range stands for the range's centre.
+    LadderPaths(const Domain& domain, std::size_t dimensions, std::span<const std::vector<double>> landmarks,
+                std::uint64_t seed);
+
+    // Both sides of each anchor of a variable, the others fixed; or of its ends alone.
+    std::vector<LadderPath> along(std::size_t d, const std::vector<double>& through, bool ends = false) const;
+    // All variables at once: each place, each corner of up to three variables, and some with an anchor of its own in each
+    // variable.
+    std::vector<LadderPath> joint();
+    // Further ladders to a corner (`place`: 0 or 1 per variable): on them one variable falls with the square of the others
+    // or the others with its, since x + y^2 has two scales.
+    std::vector<LadderPath> of_two_scales(const std::vector<double>& place) const;
+    LadderPath to_random_corner();
+    std::vector<double> generic_point();
+    // Other directions to the same anchors.
+    void vary(LadderPath& path);
+    // Scales at which the coordinates that do not move were found: distances from the nearest of their anchors.
+    std::vector<double> widths(const LadderPath& path) const;
+
+  private:
+    double random();
+    Anchor anchor(std::size_t d, double x) const;
+    LadderPath to_corner(const std::vector<double>& place, std::vector<int> rates = {}) const;
+
+    const Domain& domain_;
+    std::size_t n_;
+    std::uint64_t seed_, drawn_ = 0;
+    std::vector<std::vector<Anchor>>
+        anchors_; // of each variable: its ends, its centre, the origin, the landmarks
+    std::vector<std::vector<Anchor>> places_; // the same as points
+};
+
+} // namespace montelux
