@@ -232,12 +232,14 @@ int Formulas::count() const { return static_cast<int>(pool_->texts.size()); }
 const std::vector<std::string>& Formulas::texts() const { return pool_->texts; }
 
 std::vector<std::vector<double>> Formulas::landmarks() const {
-    return formula_landmarks(pool_->texts, pool_->variables, [this](std::string_view name) {
-        for (const auto& [known, number] : pool_->given)
-            if (name == known) return number;
-        for (const auto& [known, number] : constants)
-            if (name == known) return number;
-        return std::numeric_limits<double>::quiet_NaN();
+    mu::Parser parser = make_parser({}, pool_->given);
+    return formula_landmarks(pool_->texts, pool_->variables, [&parser](std::string_view text) {
+        try {
+            parser.SetExpr(std::string(text));
+            return parser.Eval();
+        } catch (const mu::ParserError&) {
+            return std::numeric_limits<double>::quiet_NaN();
+        }
     });
 }
 

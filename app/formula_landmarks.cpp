@@ -9,7 +9,8 @@
 namespace montelux::app {
 namespace {
 
-constexpr std::size_t most_roots = 8; // of a variable
+constexpr std::size_t most_roots = 8;        // of a variable
+constexpr std::size_t most_of_operand = 256; // characters
 
 struct Token {
     enum class Kind { number, variable, symbol };
@@ -21,6 +22,25 @@ struct Token {
 
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
+
+std::size_t name_length(std::string_view text) {
+    std::size_t length = 0;
+    while (length < text.size() && (is_letter(text[length]) || (length > 0 && is_digit(text[length]))))
+        ++length;
+    return length;
+}
+
+// Length of a name and of the bracket behind it, or of either alone; 0 where there is neither.
+std::size_t operand_length(std::string_view text) {
+    const std::size_t name = name_length(text);
+    int open = 0;
+    for (std::size_t i = name; i < std::min(text.size(), most_of_operand); ++i) {
+        if (text[i] == '(') ++open;
+        if (text[i] == ')') --open;
+        if (open == 0) return text[i] == ')' ? i + 1 : name;
+    }
+    return name;
+}
 
 std::vector<Token> tokens_of(std::string_view text, const std::vector<std::string>& variables,
                              const std::function<double(std::string_view)>& value_of) {
@@ -35,17 +55,17 @@ std::vector<Token> tokens_of(std::string_view text, const std::vector<std::strin
                 token.kind = Token::Kind::number;
                 length = static_cast<std::size_t>(stop - (text.data() + i));
             }
-        } else if (is_letter(text[i])) {
-            while (i + length < text.size() && (is_letter(text[i + length]) || is_digit(text[i + length])))
-                ++length;
-            const std::string_view name = text.substr(i, length);
-            const auto variable = std::ranges::find(variables, name);
-            token.symbol = 'f';
+        } else if (const std::size_t operand = operand_length(text.substr(i)); operand > 0) {
+            const std::size_t name = name_length(text.substr(i));
+            const auto variable = std::ranges::find(variables, text.substr(i, name));
+            token.symbol = name > 0 ? 'f' : '(';
+            length = std::max<std::size_t>(1, name);
             if (variable != variables.end()) {
                 token.kind = Token::Kind::variable;
                 token.variable = static_cast<std::size_t>(variable - variables.begin());
-            } else if (token.number = value_of(name); std::isfinite(token.number)) {
+            } else if (token.number = value_of(text.substr(i, operand)); std::isfinite(token.number)) {
                 token.kind = Token::Kind::number;
+                length = operand;
             }
         } else {
             token.symbol = text[i];

@@ -11,7 +11,7 @@ namespace montelux::app {
 // First the roots of what is linear in one variable, such as 2*x-1, x<0.5 or 3+y: the first of each variable form a point,
 // then the second, and so on (0 for a variable that has fewer). Then each number with either sign in all variables: as
 // written, by name, and products and quotients such as pi/4; exponents are left out. Each point once.
-// `value_of`: of a constant's name; NaN where there is none.
+// `value_of`: of a formula without variables, such as pi or sqrt(2); NaN where it has none.
 std::vector<std::vector<double>> formula_landmarks(const std::vector<std::string>& texts,
                                                    const std::vector<std::string>& variables,
                                                    const std::function<double(std::string_view)>& value_of);

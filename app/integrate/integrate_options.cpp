@@ -297,8 +297,9 @@ void declare(CLI::App& c, IntegrateOptions& o) {
         "  " +
         formula_functions() +
         ".\n"
-        "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 stopped before the target error (the result is\n"
-        "printed), 130 interrupted (the result so far is printed).");
+        "Exit codes: 0 done, 1 failed, 2 wrong usage, 3 stopped before the target error, or reached it with "
+        "a\n"
+        "warning (the result is printed), 130 interrupted (the result so far is printed).");
 }
 
 IntegrationTask make_task(const IntegrateOptions& o) {

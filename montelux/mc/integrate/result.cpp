@@ -28,7 +28,7 @@ std::string to_string(const IntegrationResult& result) {
     if (!result.reason.empty() && result.stop != StopReason::diverges) text += " (" + result.reason + ")";
     switch (result.stop) {
     case StopReason::error_target:
-        text += ", error target reached";
+        text += result.converged() ? ", error target reached" : ", error target reached, but with a warning";
         break;
     case StopReason::evaluations:
         text += ", stopped at the number of evaluations";

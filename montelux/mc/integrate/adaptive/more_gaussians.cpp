@@ -45,6 +45,7 @@ std::vector<Gaussian> split_gaussians(const std::vector<Gaussian>& components) {
 std::vector<Gaussian> scattered_gaussians(const PointBatch& x, std::span<const double> weights) {
     const auto n = static_cast<std::size_t>(x.dimensions());
     const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+    if (!(total > 0 && std::isfinite(total))) return {};
     std::vector<double> factor(n * n, 0.0);
     for (std::size_t d = 0; d < n; ++d) {
         std::span<const double> coordinate = x.coordinate(static_cast<int>(d));

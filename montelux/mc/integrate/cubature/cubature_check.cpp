@@ -16,8 +16,9 @@ constexpr double error_allowance = 4; // times the claimed error density of a re
 constexpr double tolerance_part = 0.25;
 constexpr double volume_share = 0.6, spread_share = 0.3; // of the points; the rest goes equally to regions
 constexpr std::size_t blocks = 16;                       // parts whose spread is the error of the mean
-constexpr std::uint64_t check_task_points = 4096;        // unless one region has more
-constexpr std::uint64_t stream = 0x6368656b;             // distinct from those of the sampling methods
+constexpr double far_beyond = 2;                  // factor: values of a hint over those that a rule saw
+constexpr std::uint64_t check_task_points = 4096; // unless one region has more
+constexpr std::uint64_t stream = 0x6368656b;      // distinct from those of the sampling methods
 
 // The points of one region.
 struct Share {
@@ -61,7 +62,7 @@ std::vector<Share> share_out(const CubatureRegions& regions, std::uint64_t count
 }
 
 struct CheckedPart {
-    std::vector<CubatureWitness> surprises;
+    std::vector<CubatureWitness> surprises, hints;
     CovarianceMoments residual;
     std::vector<double> block_sums; // blocks x components
     std::vector<double> lowest, highest;
@@ -77,6 +78,7 @@ struct CheckedPart {
 
     void merge(const CheckedPart& later) {
         surprises.insert(surprises.end(), later.surprises.begin(), later.surprises.end());
+        hints.insert(hints.end(), later.hints.begin(), later.hints.end());
         residual.merge(later.residual);
         regions.insert(regions.end(), later.regions.begin(), later.regions.end());
         differences.insert(differences.end(), later.differences.begin(), later.differences.end());
@@ -132,6 +134,15 @@ CheckedPart check_some(const Evaluator& evaluator, const CubatureRegions& region
         part.regions.push_back(s.region);
         part.differences.resize(part.differences.size() + m, 0.0);
         double* const sums = part.differences.data() + part.differences.size() - m;
+        const auto witness_at = [&](std::size_t point) {
+            CubatureWitness witness{s.region, std::vector<double>(static_cast<std::size_t>(u.dimensions())),
+                                    std::vector<double>(m)};
+            u.view().gather(point, witness.x.data());
+            for (std::size_t c = 0; c < m; ++c) witness.value[c] = g(point, static_cast<int>(c));
+            return witness;
+        };
+        double greatest = 0;
+        std::optional<std::size_t> hint;
         for (std::uint64_t i = 0; i < s.count; ++i, ++at) {
             bool surprising = false;
             // Consecutive Sobol' points of a region form one block; small regions rotate.
@@ -145,15 +156,17 @@ CheckedPart check_some(const Evaluator& evaluator, const CubatureRegions& region
                 part.lowest[c] = std::min(part.lowest[c], value);
                 part.highest[c] = std::max(part.highest[c], value);
                 surprising = surprising || surprise(regions, s.region, c, value, tolerance[c]) > 0;
+                const double seen =
+                    std::max(std::abs(regions.lowest(s.region)[c]), std::abs(regions.highest(s.region)[c]));
+                if (std::abs(value) > std::max(far_beyond * seen, greatest)) {
+                    greatest = std::abs(value);
+                    hint = at;
+                }
             }
             part.residual.add(residual);
-            if (!surprising) continue;
-            CubatureWitness witness{s.region, std::vector<double>(static_cast<std::size_t>(u.dimensions())),
-                                    std::vector<double>(m)};
-            u.view().gather(at, witness.x.data());
-            for (std::size_t c = 0; c < m; ++c) witness.value[c] = g(at, static_cast<int>(c));
-            part.surprises.push_back(std::move(witness));
+            if (surprising) part.surprises.push_back(witness_at(at));
         }
+        if (hint) part.hints.push_back(witness_at(*hint));
     }
     return part;
 }
@@ -200,6 +213,7 @@ std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const Cub
 
     CubatureCheck check;
     check.surprises = std::move(all->surprises);
+    check.hints = std::move(all->hints);
     check.residual = std::move(all->residual);
     check.regions = std::move(all->regions);
     check.differences = std::move(all->differences);

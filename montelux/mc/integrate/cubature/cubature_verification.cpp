@@ -7,7 +7,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "montelux/mc/integrate/adaptive/mode_search.h"
+#include "montelux/mc/integrate/cubature/cubature_climb.h"
 #include "montelux/mc/integrate/cubature/cubature_seams.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/sampling.h"
@@ -36,7 +36,7 @@ constexpr std::uint64_t most_of_jumps = 5;
 // integrands look no different from jumps.
 constexpr double least_of_jumps = 0.01;
 constexpr std::size_t fewest_of_jumps = 32;
-constexpr std::size_t most_climbs = 8;   // of a check
+constexpr double most_points_of_line = 4096;
 constexpr std::size_t most_seen = 256;   // surprises that are kept for later
 constexpr double shown_by_checks = 0.01; // error that they can show, as a share of the tolerance
 constexpr double share_of_claim = 0.25;  // of an error that was claimed and confirmed, which stays
@@ -61,65 +61,6 @@ double volume_of_half(const CubatureRegions& regions) {
         if (all > 0) least = std::min(least, volume);
     }
     return least;
-}
-
-// Surprises often lie in tails of peaks whose tops are in other regions. Climbs from the greatest ones; the
-// tops become witnesses as well. Returns the evaluations made.
-std::uint64_t climb(const Evaluator& evaluator, const CubatureRegions& regions,
-                    std::span<const double> tolerance, std::uint64_t most, CubatureCheck& check) {
-    const int n = evaluator.dimensions(), m = evaluator.components();
-    std::vector<CubatureWitness>& witnesses = check.surprises;
-    std::vector<std::pair<double, std::size_t>> order; // greatest surprise, relative to the tolerance
-    for (std::size_t i = 0; i < witnesses.size(); ++i) {
-        double size = 0;
-        for (std::size_t c = 0; c < tolerance.size(); ++c)
-            if (tolerance[c] > 0)
-                size = std::max(
-                    size, surprise(regions, witnesses[i].region, c, witnesses[i].value[c], tolerance[c]) /
-                              tolerance[c]);
-        order.emplace_back(-size, i);
-    }
-    std::ranges::sort(order);
-    const auto d = static_cast<std::uint64_t>(n);
-    const std::uint64_t of_each = 80 * d + 4 * d * d;
-    std::uint64_t evaluations = 0;
-    for (std::size_t k = 0; k < std::min(order.size(), most_climbs); ++k) {
-        if (evaluations + of_each + 1 > most) break;
-        const CubatureWitness from = witnesses[order[k].second];
-        ValueBuffer g;
-        // Distance of the components from the mean of the surprise's region.
-        const DensityFunction h = [&](const PointBatch& x, std::span<double> values) {
-            g.resize(x.count(), m);
-            evaluator(x, g, check.non_finite);
-            evaluations += x.count();
-            for (std::size_t i = 0; i < x.count(); ++i) {
-                values[i] = 0;
-                for (int c = 0; c < m; ++c) {
-                    const auto component = static_cast<std::size_t>(c);
-                    const double mean = regions.value(from.region)[component] / regions.volume(from.region);
-                    if (tolerance[component] > 0)
-                        values[i] += std::abs(std::as_const(g)(i, c) - mean) / tolerance[component];
-                }
-            }
-        };
-        PointBuffer start(1, n);
-        for (int j = 0; j < n; ++j) start(0, j) = from.x[static_cast<std::size_t>(j)];
-        std::array<double, 1> at_start{-order[k].first};
-        ModeSearch settings;
-        settings.most_modes = 1;
-        settings.fruitless = 1;
-        settings.max_evaluations = of_each;
-        for (const Gaussian& mode : find_modes(h, start, at_start, settings)) {
-            CubatureWitness top{
-                regions.containing(mode.mean()), {mode.mean().begin(), mode.mean().end()}, {}};
-            for (int j = 0; j < n; ++j) start(0, j) = top.x[static_cast<std::size_t>(j)];
-            std::array<double, 1> ignored{};
-            h(start, ignored);
-            for (int c = 0; c < m; ++c) top.value.push_back(std::as_const(g)(0, c));
-            witnesses.push_back(std::move(top));
-        }
-    }
-    return evaluations;
 }
 
 void save_witness(StateWriter& state, const CubatureWitness& w) {
@@ -178,6 +119,10 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
         flat = flat && high - low <= plateau * std::abs(value[c]);
     }
     std::uint64_t wanted = flat ? plateau_points * points_ : points_;
+    // In one variable more points cost little: enough to meet parts as wide as those that hold half of the integral.
+    if (problem_.evaluator.dimensions() == 1)
+        wanted = std::max(wanted, static_cast<std::uint64_t>(std::min(
+                                      enough_in_bulk / volume_of_half(regions), most_points_of_line)));
     // Where there is one jump there may be another, close to the faces of regions, where rules have no points.
     double volume = 0;
     std::size_t rough = 0;
@@ -265,8 +210,12 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     auto check = check_regions(problem_.evaluator, regions, points, problem_.seed, rounds_, tolerance,
                                problem_.full_covariance, request.cancel);
     if (!check) return 0;
-    const std::uint64_t climbed =
-        climb(problem_.evaluator, regions, tolerance, (request.max_evaluations - points) / 4, *check);
+    points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);
+    CubatureClimb climb(problem_.evaluator, regions, tolerance, (request.max_evaluations - points) / 4,
+                        *check);
+    climb.from_surprises();
+    if (blind()) climb.from_hints();
+    const std::uint64_t climbed = climb.evaluations();
     ++rounds_;
     evaluations_ += points + climbed;
     non_finite_.merge(check->non_finite);
@@ -287,7 +236,6 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
         // Once wrong, rules claim no smaller error than the points' own.
         slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
     }
-    points_in_bulk_ = static_cast<double>(points) * volume_of_half(regions);
     witnesses_ = std::move(check->surprises);
     for (const CubatureWitness& w : witnesses_)
         if (seen_.size() < most_seen) seen_.push_back(w);
@@ -333,7 +281,7 @@ void CubatureVerification::note_scattered_surprises(const CubatureRegions& regio
             if (std::ranges::none_of(apart, [&](std::size_t r) { return regions.touch(r, w.region); }))
                 apart.push_back(w.region);
         }
-        surprising_[c] += apart.size();
+        surprising_[c] += static_cast<std::uint64_t>(count);
         if (count > 0 && surprising_[c] >= fewest_features && std::isfinite(sum)) scattered_[c] = sum / count;
     }
 }

@@ -20,9 +20,10 @@ namespace {
 
 using Point = std::vector<double>;
 
-constexpr double suspicious = 0.2; // of the inner shells' masses beside the outer ones'
-constexpr double matters = 1e-3;   // of the greatest mass of a shell: a difference between two
-constexpr double outstanding = 16; // times the median of the look
+constexpr double least_resolved = 16; // exponent of the finest shell that tells of divergence inside
+constexpr double suspicious = 0.2;    // of the inner shells' masses beside the outer ones'
+constexpr double matters = 1e-3;      // of the greatest mass of a shell: a difference between two
+constexpr double outstanding = 16;    // times the median of the look
 constexpr std::size_t most_peaks = 3, more_corners = 8;
 constexpr int most_climbed = 8; // variables in which peaks are climbed and measured
 
@@ -288,8 +289,13 @@ class Look {
                               [c](const std::vector<double>& row) { return std::abs(row[c]); });
     }
 
-    bool diverges_along(const LadderPath& path, std::size_t c) {
+    bool diverges_along(LadderPath path, std::size_t c) {
         if (goes_to_infinity(path)) return diverges_at_infinity(path, c);
+        // Shells around a place inside, none of which holds an end.
+        for (std::size_t d = 0; d < n_; ++d)
+            if (const double u = path.anchors[d].u; path.side[d] != 0 && u != 0 && u != 1)
+                path.reach[d] = std::min({path.reach[d], u, 1 - u});
+        if (path.finest() < least_resolved) return false;
         const ShellValues values = [&](std::span<const double> exponents) {
             std::vector<Point> points;
             for (double k : exponents) points.push_back(path.at(k));
