@@ -200,7 +200,7 @@ class AutoEstimator final : public Estimator {
     // a multiple of cubature's.
     Agreement agreement(const StepRequest& request) const {
         const Tally rule = cubature_->tally(), sampled = sampling_->tally();
-        const std::shared_ptr<const UnitDensity> density = sampling_->density();
+        const std::shared_ptr<const UnitDensity> density = sampling_->sampled_density();
         std::vector<Unreached> missed(rule.value.size());
         if (look_)
             missed = unreached(look_->slow, missed.size(), density.get(),
@@ -273,6 +273,9 @@ class AutoEstimator final : public Estimator {
 
     std::shared_ptr<const UnitDensity> density() const override {
         return switched_ ? sampling_->density() : nullptr;
+    }
+    std::shared_ptr<const UnitDensity> sampled_density() const override {
+        return switched_ ? sampling_->sampled_density() : nullptr;
     }
     void save(StateWriter& state) const override {
         state.put(std::uint64_t{switched_} | std::uint64_t{diverges_} << 1 | std::uint64_t{rules_end_} << 2 |

@@ -110,6 +110,8 @@ class Estimator {
     virtual void load(StateReader& state) = 0;
     // The density on the unit cube that the estimator has trained so far; null where it trains none.
     virtual std::shared_ptr<const UnitDensity> density() const { return nullptr; }
+    // The density that drew the points of the tally; null: uniform.
+    virtual std::shared_ptr<const UnitDensity> sampled_density() const { return density(); }
 };
 
 } // namespace montelux

@@ -389,7 +389,7 @@ class Run {
         const std::vector<double> own = sizes(tally);
         StepRequest request = target();
         request.sizes = own;
-        const std::shared_ptr<const UnitDensity> density = estimator_->density();
+        const std::shared_ptr<const UnitDensity> density = estimator_->sampled_density();
         evidence_.judge(density.get(), request, tally);
         return tally;
     }

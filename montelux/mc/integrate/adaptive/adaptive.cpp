@@ -131,6 +131,9 @@ class AdaptiveEstimator final : public Estimator {
     std::shared_ptr<const UnitDensity> density() const override {
         return std::make_shared<const UnitDensity>(trainer_.rounds() > 0 ? trainer_.density() : cube_);
     }
+    std::shared_ptr<const UnitDensity> sampled_density() const override {
+        return &best() == &uniform_ ? nullptr : density();
+    }
     void save(StateWriter& state) const override {
         state.put(static_cast<int>(phase_));
         state.put(previous_variance_);
@@ -262,7 +265,7 @@ class AdaptiveEstimator final : public Estimator {
 
     // Are uniform points expected to converge soon? Their error falls faster than 1 / n for what is smooth.
     bool uniform_will_do(const StepRequest& request) const {
-        if (!request.targeted()) return false;
+        if (!request.targeted() || misses_a_peak(cube_, uniform_)) return false;
         // A trained density cannot follow the jumps of an indicator, and costs far more time per point.
         if (is_hit_indicator()) {
             const double expected = expected_rest_of_indicator(request);
@@ -414,7 +417,8 @@ class AdaptiveEstimator final : public Estimator {
         const double more = static_cast<double>(uniform_.points()) / static_cast<double>(weighted_.points());
         const bool better = first && more <= 2 &&
                             uniform_.error_ratio(request) * (first_sample() < explored_ ? more : 1) < ratio;
-        if (trainer_.effective_share() > trusted_exploration && (sooner || better)) {
+        if (trainer_.effective_share() > trusted_exploration && (sooner || better) &&
+            !misses_a_peak(cube_, uniform_)) {
             uniform_.compare_anew();
             phase_ = Phase::uniform;
             return;
