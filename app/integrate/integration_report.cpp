@@ -26,13 +26,10 @@ Json matrix(const std::vector<double>& values, std::size_t columns) {
 
 // What follows the values, in the library's own words.
 std::string report_rest(const IntegrationResult& r) {
-    IntegrationResult without_warnings = r;
-    without_warnings.warnings.clear();
-    const std::string all = to_string(without_warnings);
+    const std::string all = to_string(r);
     std::size_t rest = 0;
     for (std::size_t c = 0; c < r.value.size(); ++c) rest = all.find('\n', rest) + 1;
     std::string text = all.substr(rest) + "\n";
-    for (const std::string& warning : r.warnings) text += "warning: " + warning + "\n";
     if (!r.statistical)
         text += "the error is an estimate by a deterministic rule, not a standard deviation\n";
     return text;

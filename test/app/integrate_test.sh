@@ -27,6 +27,12 @@ value 2 0.01 'x<1 ? 2 : 2' --over x=0:1
 value 1 0.02 '(x^2 - 2*x + 1)*3' --over x=0:1
 value 0.842700793 0.01 'erf(1) + 0*x' --over x=0:1
 value 2 0.01 'e' --over e=0:2 # a variable may be called like a constant
+# Peaks at the formula's own numbers: beside each variable, as a root, as a constant.
+value 6.5973446 0.03 'exp(-(x^2+y^2)/2)+1e5*exp(-1e6*((x-0.37)^2+(0.61+y)^2))' --over x,y=-5:5 --relative-error 1e-3
+value 1.4322889 0.003 'cos(x)+1e4*exp(-((3*x-1)*1e4)^2)' --over x=0:1 --relative-error 1e-3
+value 1.0886227 0.003 '1+500*exp(-((x-sqrt(0.37))/1e-4)^2)' --over x=0:1 --relative-error 1e-3
+# A warning takes back the claim, and says so.
+expect 3 "error target reached, but with a warning" integrate 'sqrt(x)' --over x=-1:1 --relative-error 1e-2
 # A leading minus sign begins a formula, not an option; option values and what follows '--' are left alone.
 value -0.33333333 1e-6 -x^2 --over x=0:1
 value -0.5 1e-6 '-(x)' --over x=0:1

@@ -9,6 +9,7 @@
 
 #include "montelux/mc/integrate/adaptive/difference_walk.h"
 #include "montelux/mc/integrate/adaptive/more_gaussians.h"
+#include "montelux/mc/integrate/adaptive/ridge_trace.h"
 #include "montelux/mc/integrate/adaptive/surprises.h"
 #include "montelux/mc/integrate/witness/first_look.h"
 #include "montelux/mc/random/hash.h"
@@ -27,6 +28,7 @@ constexpr std::size_t most_remembered = 128;
 constexpr double exploring_width = 1.5;
 constexpr double safe_width = 1.1;
 constexpr std::size_t least_walked = 4, most_walked = 128; // steps of walkers after a round
+constexpr double share_of_traced = 0.25;                   // of the walkers of a check
 constexpr std::size_t longest_check = 1024;                // steps that check the density
 constexpr double few_hits = 4;      // their spread hardly shows in that of the replicates
 constexpr double heavy_shape = 0.4; // of the tail of a round's weights; from 0.5 the variance is infinite
@@ -188,8 +190,8 @@ DensityFunction DensityTrainer::counted_steering(std::uint64_t& evaluations,
 }
 
 DensityTrainer::Walk DensityTrainer::walk(const WalkedPoints& before, const Round& last,
-                                          std::uint64_t max_evaluations, std::size_t longest,
-                                          double exponent) const {
+                                          std::uint64_t max_evaluations, std::size_t longest, double exponent,
+                                          bool traces) const {
     DifferenceWalk settings;
     settings.key = hash_key(problem_.seed, 5, walks_);
     settings.steps = std::min<std::uint64_t>(longest, max_evaluations / settings.walkers);
@@ -197,17 +199,36 @@ DensityTrainer::Walk DensityTrainer::walk(const WalkedPoints& before, const Roun
     Walk walk;
     if (settings.steps < least_walked) return walk;
     const DensityFunction h = counted_steering(walk.evaluations, walk.non_finite);
-    if (before.h.empty()) {
-        std::vector<double> weights(last.h.size());
-        for (std::size_t i = 0; i < weights.size(); ++i)
-            weights[i] = std::pow(last.h[i], exponent) / last.p[i];
-        walk.points = walk_by_differences(h, last.x, last.h, weights, settings);
-    } else {
-        const std::size_t first = before.h.size() - settings.walkers;
-        walk.points = walk_by_differences(h, before.x.view().slice(first, settings.walkers),
-                                          std::span(before.h).subspan(first),
-                                          std::vector<double>(settings.walkers, 1.0), settings);
+    const std::size_t first = before.h.empty() ? 0 : before.h.size() - settings.walkers;
+    const PointBatch from = before.h.empty() ? last.x.view() : before.x.view().slice(first, settings.walkers);
+    std::vector<double> at_from(
+        before.h.empty()
+            ? last.h
+            : std::vector(before.h.begin() + static_cast<std::ptrdiff_t>(first), before.h.end()));
+    std::vector<double> weights(at_from.size(), 1.0);
+    for (std::size_t i = 0; before.h.empty() && i < weights.size(); ++i)
+        weights[i] = std::pow(last.h[i], exponent) / last.p[i];
+    PointBuffer starts(from.count(), from.dimensions());
+    for (int d = 0; d < from.dimensions(); ++d)
+        std::ranges::copy(from.coordinate(d), starts.coordinate(d).begin());
+    if (traces && from.dimensions() > 1) {
+        std::vector<double> ratios(last.h.size());
+        for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = last.h[i] / last.p[i];
+        const TracedPoints traced =
+            trace_ridge(h, last.x, last.h, ratios, hash_key(problem_.seed, 6, walks_), max_evaluations / 4);
+        const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
+        const std::size_t count = starts.count() + traced.h.size();
+        PointBuffer all(count, from.dimensions());
+        for (int d = 0; d < from.dimensions(); ++d) {
+            const auto end = std::ranges::copy(starts.view().coordinate(d), all.coordinate(d).begin()).out;
+            std::ranges::copy(traced.x.view().coordinate(d), end);
+        }
+        starts = std::move(all);
+        at_from.insert(at_from.end(), traced.h.begin(), traced.h.end());
+        weights.resize(count, share_of_traced / (1 - share_of_traced) * total /
+                                  static_cast<double>(traced.h.size()));
     }
+    walk.points = walk_by_differences(h, starts, at_from, weights, settings);
     return walk;
 }
 
@@ -221,7 +242,7 @@ double DensityTrainer::Round::integral(double exponent) const {
 std::optional<double> DensityTrainer::unseen_share(double n, std::uint64_t max_evaluations) {
     const Round& last = recent_.back();
     const double exponent = 1 / scout_temperature(density_.dimensions());
-    Walk walked = walk(scouts_, last, max_evaluations, longest_check, exponent);
+    Walk walked = walk(scouts_, last, max_evaluations, longest_check, exponent, true);
     if (walked.points.h.empty()) return std::nullopt;
     const double mean = last.integral(1);
     const std::size_t count = walked.points.h.size();

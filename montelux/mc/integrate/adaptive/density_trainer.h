@@ -90,9 +90,10 @@ class DensityTrainer {
         std::uint64_t evaluations = 0;
         NonFiniteCount non_finite;
     };
-    // Continues a walk, or starts at points of the round just drawn.
+    // Continues a walk, or starts at points of the round just drawn. `traces`: some walkers begin on crests of ridges, of
+    // which they could not reach the ends.
     Walk walk(const WalkedPoints& before, const Round& last, std::uint64_t max_evaluations,
-              std::size_t longest, double exponent) const;
+              std::size_t longest, double exponent, bool traces = false) const;
     // False where `stop` said so, before anything changed.
     bool fit(const std::function<bool()>& stop);
     Pool pool() const;

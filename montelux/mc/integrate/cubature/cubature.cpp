@@ -382,7 +382,7 @@ class CubatureEstimator final : public Estimator {
             tally.warnings.push_back("the memory for regions is used up at " + std::to_string(max_regions_) +
                                      " regions; raise max_memory, or take a method that samples");
         if (!verification_.warning().empty()) tally.warnings.push_back(verification_.warning());
-        if (n_ > 1 && verification_.points() > 0 && !tally.localised) {
+        if ((n_ > 1 || verification_.blind()) && verification_.points() > 0 && !tally.localised) {
             std::ostringstream text;
             text << verification_.points() << " random points checked the rules; they miss other values in 1/"
                  << std::lround(static_cast<double>(verification_.points()) / often_missed)

@@ -9,7 +9,7 @@ using Generator = SymmetricRule::Generator;
 
 // The outermost points on the axes leave a twentieth of a region unseen, 1/40 at each face, where jumps are
 // common after many halvings. Probes leave 1/200 per face.
-constexpr double probe = 0.995;
+constexpr double probe_place = 0.995;
 
 Generator diagonal(int places, double x) { return Generator(static_cast<std::size_t>(places), x); }
 
@@ -32,7 +32,7 @@ GenzMalikSquares genz_malik_squares() {
 } // namespace
 
 SymmetricRule coarse_rule_of_one_dimension() {
-    return {1, 11, {{}, {0.466372926024552848}, {0.825842930408165586}, {probe}}};
+    return {1, 11, {{}, {0.466372926024552848}, {0.825842930408165586}, {probe_place}}};
 }
 
 SymmetricRule fine_rule_of_one_dimension() {
@@ -41,7 +41,7 @@ SymmetricRule fine_rule_of_one_dimension() {
             {{},
              {0.466372926024552848},
              {0.825842930408165586},
-             {probe},
+             {probe_place},
              {0.242876211049077481},
              {0.662510520380892081},
              {0.941666396127996058}}};
@@ -87,7 +87,7 @@ SymmetricRule three_dimensional_rule() {
 SymmetricRule genz_malik_7(int dimensions) {
     const GenzMalikSquares s = genz_malik_squares();
     const double l1 = std::sqrt(s.l1), l2 = std::sqrt(s.l2);
-    return {dimensions, 7, {{}, {l2}, {l1}, {l1, l1}, diagonal(dimensions, std::sqrt(s.l0))}, probe};
+    return {dimensions, 7, {{}, {l2}, {l1}, {l1, l1}, diagonal(dimensions, std::sqrt(s.l0))}, probe_place};
 }
 
 SymmetricRule genz_malik_9(int dimensions) {
@@ -104,7 +104,7 @@ SymmetricRule genz_malik_9(int dimensions) {
              {l1, l2},
              diagonal(3, l1),
              diagonal(dimensions, std::sqrt(s.l0))},
-            probe};
+            probe_place};
 }
 
 } // namespace montelux

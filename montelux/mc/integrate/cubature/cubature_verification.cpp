@@ -25,7 +25,8 @@ constexpr std::uint64_t fewest_points = 16;
 constexpr std::size_t fewest_features = 3; // that call for more points
 // Features that are separated by a background of one value, to within a part of the range, in so much of the domain.
 constexpr double flatness = 1e-3, least_background = 0.4;
-constexpr std::uint64_t most_points = 1 << 20; // for them
+constexpr std::uint64_t most_points = 1 << 20; // for them, and after doubts
+constexpr std::uint64_t points_of_doubt = 4;   // times those of the check before
 constexpr double plateau = 0.1;                // range of the values beside their mean
 constexpr std::uint64_t plateau_points = 4;    // times as many points if only a plateau was seen
 // Points for an integrand with jumps, times the relative target: a part that holds four targets of the volume is then
@@ -82,7 +83,7 @@ bool CubatureVerification::verified(std::span<const double> value) const {
     if (points_ == 0) return true;
     if (checked_value_.empty() || !witnesses_.empty()) return false;
     if (!warning_.empty()) return true; // no further check would help
-    if (disagrees_ || !enough_points_) return false;
+    if (disagrees_ || doubtful_ || !enough_points_) return false;
     for (std::size_t c = 0; c < value.size(); ++c)
         if (!(std::abs(value[c] - checked_value_[c]) <= checked_error_[c])) return false;
     return true;
@@ -140,6 +141,7 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
                     wanted, static_cast<std::uint64_t>(std::min(
                                 points_per_target / target, static_cast<double>(most_of_jumps * points_))));
         }
+    if (doubtful_) wanted = std::max(wanted, std::min(points_of_doubt * checked_points_, most_points));
     if (is_scattered()) {
         double needed = request.targeted() ? 0 : static_cast<double>(evaluations);
         for (std::size_t c = 0; request.targeted() && c < value.size(); ++c)
@@ -227,11 +229,13 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     checked_value_.assign(value.begin(), value.end());
     checked_error_.assign(error.begin(), error.end());
     slack_.resize(lowest_.size(), 0.0);
+    doubtful_ = false;
     for (std::size_t c = 0; c < lowest_.size(); ++c) {
         lowest_[c] = std::min(lowest_[c], check->lowest[c]);
         highest_[c] = std::max(highest_[c], check->highest[c]);
         const double difference = std::abs(check->difference[c]), noise = check->standard_error[c];
         const bool doubtful = difference > error[c] + suspicion * noise;
+        doubtful_ = doubtful_ || (doubtful && points < most_points);
         surprised_ = surprised_ || doubtful || !check->surprises.empty();
         // Once wrong, rules claim no smaller error than the points' own.
         slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
@@ -456,6 +460,7 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(unsurprised_);
     state.put(surprised_);
     state.put(disagrees_);
+    state.put(doubtful_);
     montelux::save(state, non_finite_);
     state.put(std::string_view(warning_));
 }
@@ -509,6 +514,7 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     surprised_ = state.get<int>() != 0;
     if (!slack_.empty()) fits(slack_, m);
     disagrees_ = state.get<int>() != 0;
+    doubtful_ = state.get<bool>();
     montelux::load(state, non_finite_);
     warning_ = state.get_text();
 }

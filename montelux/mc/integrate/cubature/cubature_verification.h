@@ -138,7 +138,8 @@ class CubatureVerification {
     std::uint64_t checked_points_ = 0;
     bool enough_points_ = true; // for features of that size
     bool unsurprised_ = false;  // since before the last check
-    bool disagrees_ = false;    // the mean of the points, in the last check
+    bool disagrees_ = false;    // the mean of the points, in the last check,
+    bool doubtful_ = false;     // or it may: more points decide
     std::string warning_;
 };
 

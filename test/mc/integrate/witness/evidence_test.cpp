@@ -4,8 +4,10 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numbers>
 #include <vector>
 
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/integrate/witness/evidence.h"
 #include "montelux/mc/integrate/witness/largest_values.h"
@@ -148,6 +150,47 @@ TEST(Evidence, PolesInsideOfSeveralVariablesRaiseTheError) {
 }
 
 // A pole that ever greater values lead to is one pole.
+// One value was seen at zero, and its neighbours in double precision are zero.
+TEST(Evidence, PeaksNarrowerThanDoublesAreNotZero) {
+    const IntegrationResult line =
+        integrate([](double x) { return std::exp(-std::pow(x / 1e-30, 2)); }, Domain::interval(-1, 1),
+                  Method(), {.relative_error = 1e-3, .evaluations = 100'000});
+    EXPECT_FALSE(line.converged());
+    EXPECT_GT(line.standard_error[0], 1e-30);
+    const IntegrationResult plane =
+        integrate([](std::span<const double> x) { return std::exp(-(x[0] * x[0] + x[1] * x[1]) / 1e-34); },
+                  Domain({{-1, 1}, {-1, 1}}), Method(), {.relative_error = 1e-3, .evaluations = 100'000});
+    EXPECT_FALSE(plane.converged());
+    EXPECT_GT(plane.standard_error[0], 0);
+}
+
+TEST(Evidence, HalfOfAWideIntegralIsNotClaimed) {
+    for (double scale : {1e20, 1e40}) {
+        const IntegrationResult r = integrate([=](double x) { return std::exp(-std::pow(x / scale, 2)); },
+                                              Domain::interval(-infinity, infinity), Method(),
+                                              {.relative_error = 1e-2, .evaluations = 300'000});
+        EXPECT_FALSE(r.converged());
+        EXPECT_LT(std::abs(r.value[0] / scale - std::sqrt(std::numbers::pi)),
+                  3 * r.standard_error[0] / scale);
+    }
+}
+
+// A narrow mode that the look has seen: uniform points, which miss it, would agree with one another.
+TEST(Evidence, UniformPointsDoNotWinOverAPeak) {
+    const auto f = [](std::span<const double> x) {
+        const double wide = x[0] * x[0] + x[1] * x[1], narrow = std::pow(x[0] - 2, 2) + std::pow(x[1] + 3, 2);
+        return std::exp(-wide / 2) + 1e4 * std::exp(-narrow / 2e-4);
+    };
+    const Domain plane({{-infinity, infinity}, {-infinity, infinity}});
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const IntegrationResult r =
+            integrate(Integrand(f).with_landmarks({{2, -3}}), plane, Method(),
+                      {.relative_error = 1e-3, .evaluations = 300'000}, {.seed = seed});
+        if (!r.converged()) continue;
+        EXPECT_NEAR(r.value[0], 4 * std::numbers::pi, 5 * r.standard_error[0]) << seed;
+    }
+}
+
 TEST(Evidence, PolesCountOnce) {
     const Integrand f([](std::span<const double> x) {
         return std::pow((x[0] - 0.3) * (x[0] - 0.3) + (x[1] - 0.7) * (x[1] - 0.7), -0.9);

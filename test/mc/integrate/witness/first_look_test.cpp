@@ -8,6 +8,7 @@
 #include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/integrate/integrate_log.h"
 #include "montelux/mc/integrate/witness/first_look.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux {
 namespace {
@@ -72,6 +73,55 @@ TEST(FirstLook, TellsDivergenceAtEndsAndAtInfinity) {
     EXPECT_TRUE(
         look_at([](std::span<const double> x) { return 1 / std::hypot(x[0], x[1]); }, Domain::unit_cube(2))
             .divergence.empty());
+}
+
+// The place is one of many landmarks, and has another coordinate in each variable.
+TEST(FirstLook, FindsPeaksAtPointsOfLandmarks) {
+    const std::vector<double> place{0.37, -0.61, 0.5, 1.2, -2.9};
+    std::vector<std::vector<double>> landmarks{place};
+    for (double v = 0.125; v < 1.6; v += 0.125) landmarks.emplace_back(5, v);
+    for (int n : {5, 2}) {
+        const auto d = static_cast<std::size_t>(n);
+        for (auto& x : landmarks) x.resize(d);
+        const auto f = [&](std::span<const double> x) {
+            double squares = 0, from_place = 0;
+            for (std::size_t i = 0; i < x.size(); ++i) {
+                squares += x[i] * x[i];
+                from_place += std::pow(x[i] - place[i], 2);
+            }
+            return std::exp(-squares / 2) + 1e5 * std::exp(-1e6 * from_place);
+        };
+        const FirstLook look = look_at(f, Domain(std::vector<Range>(d, {-5, 5})), landmarks);
+        ASSERT_FALSE(look.peaks.empty()) << n;
+        for (std::size_t i = 0; i < d; ++i) EXPECT_NEAR(look.peaks[0].u[i], (place[i] + 5) / 10, 1e-4) << n;
+        EXPECT_LE(look.evaluations, 1400u) << n;
+    }
+    EXPECT_THROW(look_at([](std::span<const double> x) { return x[0]; }, Domain({{0, 1}, {0, 1}}), {{0.5}}),
+                 Error);
+}
+
+TEST(FirstLook, TellsDivergenceByOverflowAndBeforeValuesEnd) {
+    EXPECT_EQ(look_at([](double x) { return std::exp(x * x); }, Domain::interval(0, infinity)).divergence,
+              "x -> inf");
+    const auto corner = [](std::span<const double> x) {
+        double sum = 0;
+        for (double v : x) sum += 1 - std::cos(v);
+        return 1 / sum; // infinite at distances below 1e-8
+    };
+    EXPECT_FALSE(look_at(corner, Domain({{0, 3}, {0, 3}})).divergence.empty());
+    EXPECT_TRUE(look_at(corner, Domain({{0, 3}, {0, 3}, {0, 3}})).divergence.empty());
+}
+
+// Large scales are no divergence, and what lies beyond the cube's points is measured.
+TEST(FirstLook, MeasuresWhatLiesFartherOutThanPoints) {
+    for (double scale : {1e14, 1e20, 1e40}) {
+        const FirstLook look = look_at([=](double x) { return std::exp(-x / scale); },
+                                       Domain::interval(0, infinity), {{scale}, {1}});
+        EXPECT_EQ(look.divergence, "") << scale;
+        if (scale == 1e14) continue;
+        ASSERT_EQ(look.unresolved.size(), 1u) << scale;
+        EXPECT_NEAR(look.unresolved[0] / scale, 1, 0.3) << scale;
+    }
 }
 
 // Ends that are close to zero beside the width of the range, and narrow peaks far from zero.

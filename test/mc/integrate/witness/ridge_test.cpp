@@ -34,6 +34,13 @@ const std::vector<Ridge> ridges{
     {"long", false, [](std::span<const double> x) {
          return ridge_of(x[0] - x[1], std::exp(-1e-6 * (x[0] + x[1]) * (x[0] + x[1])));
      }}};
+const std::vector<Ridge> ends_far_out{
+    {"1e6 long", false,
+     [](std::span<const double> x) { return ridge_of(x[1], std::exp(-1e-12 * x[0] * x[0])); }},
+    {"1e8 long", false,
+     [](std::span<const double> x) { return ridge_of(x[1], std::exp(-1e-16 * x[0] * x[0])); }},
+    {"1 / x along x", true,
+     [](std::span<const double> x) { return ridge_of(x[1], 1 / (1 + std::abs(x[0]))); }}};
 
 TEST(Ridge, MassesThatDoNotFall) {
     for (const Ridge& ridge : ridges) {
@@ -43,6 +50,17 @@ TEST(Ridge, MassesThatDoNotFall) {
         EXPECT_EQ(ridge_diverges(raw, {far, other}, [](const auto& row) { return row[0]; }), ridge.diverges)
             << ridge.name;
         EXPECT_LT(raw.evaluations(), 700u) << ridge.name;
+    }
+}
+
+// Along a variable, distances count that points of the cube do not reach.
+TEST(Ridge, OneThatEndsFarOutDoesNotDiverge) {
+    for (const Ridge& ridge : ends_far_out) {
+        const Evaluator evaluator(Integrand(ridge.f), plane);
+        RawValues raw(evaluator);
+        EXPECT_EQ(ridge_diverges(raw, {std::exp2(-18), 0.5}, [](const auto& row) { return row[0]; }),
+                  ridge.diverges)
+            << ridge.name;
     }
 }
 
