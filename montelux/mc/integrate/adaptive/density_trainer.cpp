@@ -194,41 +194,38 @@ DensityTrainer::Walk DensityTrainer::walk(const WalkedPoints& before, const Roun
                                           bool traces) const {
     DifferenceWalk settings;
     settings.key = hash_key(problem_.seed, 5, walks_);
-    settings.steps = std::min<std::uint64_t>(longest, max_evaluations / settings.walkers);
     settings.exponent = exponent;
     Walk walk;
-    if (settings.steps < least_walked) return walk;
+    const std::uint64_t most_traced = traces && last.x.dimensions() > 1 ? max_evaluations / 4 : 0;
+    if ((max_evaluations - most_traced) / settings.walkers < least_walked) return walk;
     const DensityFunction h = counted_steering(walk.evaluations, walk.non_finite);
-    const std::size_t first = before.h.empty() ? 0 : before.h.size() - settings.walkers;
-    const PointBatch from = before.h.empty() ? last.x.view() : before.x.view().slice(first, settings.walkers);
-    std::vector<double> at_from(
-        before.h.empty()
-            ? last.h
-            : std::vector(before.h.begin() + static_cast<std::ptrdiff_t>(first), before.h.end()));
-    std::vector<double> weights(at_from.size(), 1.0);
-    for (std::size_t i = 0; before.h.empty() && i < weights.size(); ++i)
-        weights[i] = std::pow(last.h[i], exponent) / last.p[i];
-    PointBuffer starts(from.count(), from.dimensions());
-    for (int d = 0; d < from.dimensions(); ++d)
-        std::ranges::copy(from.coordinate(d), starts.coordinate(d).begin());
-    if (traces && from.dimensions() > 1) {
+    TracedPoints traced;
+    if (most_traced > 0) {
         std::vector<double> ratios(last.h.size());
         for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = last.h[i] / last.p[i];
-        const TracedPoints traced =
-            trace_ridge(h, last.x, last.h, ratios, hash_key(problem_.seed, 6, walks_), max_evaluations / 4);
-        const double total = std::accumulate(weights.begin(), weights.end(), 0.0);
-        const std::size_t count = starts.count() + traced.h.size();
-        PointBuffer all(count, from.dimensions());
-        for (int d = 0; d < from.dimensions(); ++d) {
-            const auto end = std::ranges::copy(starts.view().coordinate(d), all.coordinate(d).begin()).out;
-            std::ranges::copy(traced.x.view().coordinate(d), end);
-        }
-        starts = std::move(all);
-        at_from.insert(at_from.end(), traced.h.begin(), traced.h.end());
-        weights.resize(count, share_of_traced / (1 - share_of_traced) * total /
-                                  static_cast<double>(traced.h.size()));
+        traced = trace_ridge(h, last.x, last.h, ratios, hash_key(problem_.seed, 6, walks_), most_traced);
     }
-    walk.points = walk_by_differences(h, starts, at_from, weights, settings);
+    settings.steps =
+        std::min<std::uint64_t>(longest, (max_evaluations - walk.evaluations) / settings.walkers);
+    const bool begins = before.h.empty();
+    const std::size_t first = begins ? 0 : before.h.size() - settings.walkers;
+    const PointBatch from = begins ? last.x.view() : before.x.view().slice(first, settings.walkers);
+    PointBuffer starts(from.count() + traced.h.size(), from.dimensions());
+    for (int d = 0; d < from.dimensions(); ++d) {
+        const auto end = std::ranges::copy(from.coordinate(d), starts.coordinate(d).begin()).out;
+        if (!traced.h.empty()) std::ranges::copy(traced.x.view().coordinate(d), end);
+    }
+    const std::vector<double>& h_of_all = begins ? last.h : before.h;
+    std::vector<double> h_there(h_of_all.begin() + static_cast<std::ptrdiff_t>(first), h_of_all.end());
+    std::vector<double> weights(from.count(), 1.0);
+    for (std::size_t i = 0; begins && i < weights.size(); ++i)
+        weights[i] = std::pow(last.h[i], exponent) / last.p[i];
+    const double total = std::accumulate(weights.begin(), weights.end(), 0.0),
+                 of_each =
+                     share_of_traced / (1 - share_of_traced) * total / static_cast<double>(traced.h.size());
+    h_there.insert(h_there.end(), traced.h.begin(), traced.h.end());
+    weights.resize(starts.count(), of_each);
+    walk.points = walk_by_differences(h, starts, h_there, weights, settings);
     return walk;
 }
 

@@ -164,8 +164,9 @@ TEST(DensityTrainer, WalkersTellWhatIsHardlySampled) {
     ASSERT_LE(trainer.density().gaussians().size(), 3u);
     const std::uint64_t before = watched.evaluations, counted = trainer.evaluations();
     EXPECT_GT(trainer.unseen_share(300, 8192).value(), 0.3);
-    EXPECT_EQ(watched.evaluations - before, 8192u);
-    EXPECT_EQ(trainer.evaluations() - counted, 8192u);
+    EXPECT_LE(watched.evaluations - before, 8192u);
+    EXPECT_GT(watched.evaluations - before, 8000u);
+    EXPECT_EQ(trainer.evaluations() - counted, watched.evaluations - before);
     // So many points hit every part of the ring.
     EXPECT_LT(trainer.unseen_share(1e8, 8192).value(), 1e-3);
     for (int i = 0; i < 8; ++i) ASSERT_TRUE(trainer.round(4096, {}));
