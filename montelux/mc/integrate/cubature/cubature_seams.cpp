@@ -30,4 +30,17 @@ bool raise_seam_errors(CubatureRegions& regions) {
     return grown;
 }
 
+double surprise_near_face(const CubatureRegions& regions, std::size_t region, std::size_t component, double x,
+                          double value) {
+    const double h = regions.half_width(region)[0];
+    for (const bool upper : {false, true}) {
+        const CubatureRegions::Face& face = regions.face(region, component, upper);
+        const double from_face =
+            upper ? regions.centre(region)[0] + h - x : x - (regions.centre(region)[0] - h);
+        if (from_face <= 2 * h * face.unseen)
+            return std::max(0.0, std::abs(value - face.value) - 2 * face.slack);
+    }
+    return 0;
+}
+
 } // namespace montelux

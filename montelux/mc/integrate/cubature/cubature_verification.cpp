@@ -374,8 +374,11 @@ void CubatureVerification::skip(std::span<const double> value, std::span<const d
 
 double CubatureVerification::weight(const CubatureRegions& regions, const CubatureWitness& witness,
                                     std::size_t component) const {
-    const double excess =
+    double excess =
         surprise(regions, witness.region, component, witness.value[component], tolerance_[component]);
+    if (witness.x.size() == 1)
+        excess = std::max(excess, surprise_near_face(regions, witness.region, component, witness.x[0],
+                                                     witness.value[component]));
     const double error = std::min(regions.volume(witness.region), witness.volume) * excess;
     return error > negligible_surprise * tolerance_[component] ? error : 0;
 }

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <numbers>
 #include <string>
+#include <utility>
 
 #include "montelux/mc/integrate/auto.h"
 #include "montelux/mc/integrate/cubature/cubature.h"
@@ -64,6 +65,20 @@ TEST(CubatureVerification, ThinRidgesCallForMorePoints) {
                         }),
                         Domain({{-infinity, infinity}, {-infinity, infinity}}), 10 * std::numbers::pi};
     EXPECT_LE(claims_far_off(tilted, Cubature(), 1e-3, 12), 1);
+}
+
+// A dip at the end of a range, closer than the outermost points of a rule: its values lie within those that the rule saw.
+TEST(CubatureVerification, DipsAtAnEndAreSeen) {
+    for (const auto& [slow, fast] :
+         {std::pair(0.005862, 4.947), std::pair(1e-3, 1.0), std::pair(0.02, 30.0)}) {
+        const double scale = slow * fast / (fast - slow), end = 1.2e5;
+        const Hidden decay{"daughter", Integrand([=](double t) {
+                               return scale * (std::exp(-slow * t) - std::exp(-fast * t));
+                           }),
+                           Domain::interval(0, end), scale * (1 / slow - 1 / fast)};
+        for (double target : {1e-2, 1e-4})
+            EXPECT_EQ(claims_far_off(decay, Cubature(), target, 3), 0) << slow << " at " << target;
+    }
 }
 
 // Equal narrow peaks, of which rules see one: points on the other flanks have values far below the tolerance.
