@@ -93,9 +93,12 @@ bool CubatureVerification::due(const CubatureRegions& regions, std::span<const d
                                std::span<const double> error, std::uint64_t evaluations,
                                const StepRequest& request, bool claimed) const {
     if (points_ == 0 || !warning_.empty() || !witnesses_.empty()) return false;
-    // An error that an earlier check left, when regions were larger, may be most of what is claimed.
-    for (std::size_t c = 0; !request.targeted() && c < error.size(); ++c)
-        if (2 * regions.count() >= 3 * checked_regions_ && slack(c) > 0.5 * error[c]) return true;
+    // An error that an earlier check left, when regions were larger, may be most of what is claimed, or all that is above
+    // a target.
+    for (std::size_t c = 0; c < error.size(); ++c)
+        if (2 * regions.count() >= 3 * checked_regions_ && slack(c) > 0.5 * error[c] &&
+            (!request.targeted() || error[c] > request.tolerance(c, value[c])))
+            return true;
     bool fresh = !verified(value);
     if (!fresh) { // a tighter target sees smaller surprises
         const std::vector<double> now = tolerances(regions, value, error, request);
