@@ -85,8 +85,8 @@ class Look {
         }
         const auto rows = raw_(points);
         for (std::size_t i = 0; i < points.size(); ++i)
-            if (keep(points[i], rows[i], volumes[i], true) && i % ladder.size() > 0 &&
-                is_inside(paths[i / ladder.size()]))
+            if (keep(points[i], rows[i], volumes[i], true) && is_inside(paths[i / ladder.size()]) &&
+                size(rows[i]) > outstanding * size(rows[i - i % ladder.size()]))
                 deep_.push_back(look_.witnesses.size() - 1);
         refine(paths, walked, rows, volumes);
         if (!tests || !look_.divergence.empty()) return;
@@ -393,7 +393,8 @@ class Look {
     LadderPaths paths_;
     std::vector<double> largest_;       // |g| of each component
     std::vector<std::size_t> ordinary_; // witnesses
-    std::vector<std::size_t> deep_;     // witnesses, of these those close to a place inside
+    std::vector<std::size_t>
+        deep_; // witnesses close to a place inside, far above the beginning of their ladder
     FirstLook look_;
 };
 

@@ -41,7 +41,7 @@ TEST_P(CubatureGoal, IsHonestWithinTheEvaluations) {
     std::ranges::sort(evaluations);
     const std::uint64_t check = goal.line.dimensions == 1 ? 128 : 4096;
     // The first look; and where many regions are compared with it, some halvings more.
-    const std::uint64_t look = goal.line.dimensions == 1 ? 24 : 250 + 50 * goal.line.dimensions;
+    const std::uint64_t look = goal.line.dimensions == 1 ? 24 : 200 + 50 * goal.line.dimensions;
     EXPECT_LE(evaluations[5], goal.median + goal.median / 8 + check + look);
 }
 
