@@ -138,7 +138,7 @@ class Reader {
                std::string_view("(,+-<>=?:&|").find(tokens_[i].symbol) != std::string_view::npos;
     }
 
-    // Of the numbers from `i` on, which moves behind them.
+    // Product of the numbers from `i` on, which moves behind them.
     double product(std::size_t& i, const std::function<void(double)>& add) const {
         double value = tokens_[i++].number;
         if (add) add(value);

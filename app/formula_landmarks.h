@@ -8,9 +8,9 @@
 
 namespace montelux::app {
 
-// First the roots of what is linear in one variable, such as 2*x-1, x<0.5 or 3+y: the first of each variable form a point,
-// then the second, and so on (0 for a variable that has fewer). Then each number with either sign in all variables: as
-// written, by name, and products and quotients such as pi/4; exponents are left out. Each point once.
+// Roots of what is linear in one variable, such as 2*x-1, x<0.5 or 3+y, come first: the first of each variable form a
+// point, then the second, and so on (0 for a variable that has fewer). Each number follows, with either sign in all
+// variables: as written, by name, as a product or quotient such as pi/4; exponents are left out. Each point stands once.
 // `value_of`: of a formula without variables, such as pi or sqrt(2); NaN where it has none.
 std::vector<std::vector<double>> formula_landmarks(const std::vector<std::string>& texts,
                                                    const std::vector<std::string>& variables,

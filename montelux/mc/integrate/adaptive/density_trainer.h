@@ -90,8 +90,8 @@ class DensityTrainer {
         std::uint64_t evaluations = 0;
         NonFiniteCount non_finite;
     };
-    // Continues a walk, or starts at points of the round just drawn. `traces`: some walkers begin on crests of ridges, of
-    // which they could not reach the ends.
+    // Continues a walk, or starts at points of the round just drawn. `traces`: some walkers begin on crests of
+    // ridges, of which they could not reach the ends.
     Walk walk(const WalkedPoints& before, const Round& last, std::uint64_t max_evaluations,
               std::size_t longest, double exponent, bool traces = false) const;
     // False where `stop` said so, before anything changed.

@@ -15,9 +15,10 @@ struct TracedPoints {
     std::vector<double> h;
 };
 
-// Follows h on the unit cube from two points with the largest ratio h / p, the ends of what the points x reach, to both
-// sides: along the principal axis of the surrounding points at first, then along the crest itself, by the best of some
-// points around the place where it should go on. Ends where h is negligible or the cube ends, and after max_evaluations.
+// Follows h on the unit cube from two points with the largest ratio h / p, the ends of what the points x reach, to
+// both sides: along the principal axis of the surrounding points at first, then along the crest itself, by the best of
+// some points around the place where it should go on. Ends where h is negligible, at the cube's faces, and after
+// max_evaluations.
 TracedPoints trace_ridge(const DensityFunction& h, const PointBatch& x, std::span<const double> h_at_x,
                          std::span<const double> ratios, std::uint64_t key, std::uint64_t max_evaluations);
 

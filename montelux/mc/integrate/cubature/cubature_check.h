@@ -22,8 +22,8 @@ struct CubatureWitness {
 
 struct CubatureCheck {
     std::vector<CubatureWitness> surprises;
-    // Points with values far beyond all that their region's rule saw, however small: they may lie on flanks of other peaks.
-    // The greatest of each region.
+    // Points with values far beyond all that their region's rule saw, however small: they may lie on flanks of other
+    // peaks. The greatest of each region.
     std::vector<CubatureWitness> hints;
     // Of g - (mean of its region), over the points.
     CovarianceMoments residual;

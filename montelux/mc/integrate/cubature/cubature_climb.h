@@ -19,9 +19,9 @@ class CubatureClimb {
                   std::span<const double> tolerance, std::uint64_t most, CubatureCheck& check)
         : evaluator_(evaluator), regions_(regions), tolerance_(tolerance), most_(most), check_(check) {}
 
-    // Surprises often lie in tails of peaks whose tops are in other regions: from the greatest ones.
+    // Climbs from the greatest surprises, which often lie in tails of peaks whose tops are in other regions.
     void from_surprises();
-    // From hints that lie on no flank of a top found before: the values between dip.
+    // Climbs from hints that lie on no flank of a top found before: the values between dip.
     void from_hints();
     std::uint64_t evaluations() const { return evaluations_; }
 

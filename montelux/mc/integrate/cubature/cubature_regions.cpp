@@ -28,12 +28,6 @@ bool CubatureRegions::touches(std::size_t r, std::span<const double> x) const {
     return true;
 }
 
-bool CubatureRegions::touch(std::size_t a, std::size_t b) const {
-    for (std::size_t d = 0; d < n_; ++d)
-        if (std::abs(centre(a)[d] - centre(b)[d]) > half_width(a)[d] + half_width(b)[d]) return false;
-    return true;
-}
-
 std::size_t CubatureRegions::containing(std::span<const double> x) const {
     std::size_t nearest = 0;
     double least = std::numeric_limits<double>::infinity();

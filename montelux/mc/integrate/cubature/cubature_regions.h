@@ -66,8 +66,6 @@ class CubatureRegions {
     double distance(std::size_t r, std::span<const double> x) const;
     // Is the point inside, or on a face?
     bool touches(std::size_t r, std::span<const double> x) const;
-    // Have two regions a point in common?
-    bool touch(std::size_t a, std::size_t b) const;
     // The region that holds the point of the unit cube.
     std::size_t containing(std::span<const double> x) const;
 

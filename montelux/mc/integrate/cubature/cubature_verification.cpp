@@ -22,7 +22,7 @@ constexpr double suspicion = 2.5;            // standard errors beyond which the
 constexpr double significant_errors = 5;     // standard errors between rules and points
 constexpr std::uint64_t most_rounds = 12;
 constexpr std::uint64_t fewest_points = 16;
-constexpr std::size_t fewest_features = 3; // that call for more points
+constexpr std::size_t fewest_features = 3; // or surprises, that call for more points
 // Features that are separated by a background of one value, to within a part of the range, in so much of the domain.
 constexpr double flatness = 1e-3, least_background = 0.4;
 constexpr std::uint64_t most_points = 1 << 20; // for them, and after doubts
@@ -123,7 +123,7 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
         flat = flat && high - low <= plateau * std::abs(value[c]);
     }
     std::uint64_t wanted = flat ? plateau_points * points_ : points_;
-    // In one variable more points cost little: enough to meet parts as wide as those that hold half of the integral.
+    // More points cost little in one variable: enough to meet parts as wide as those that hold half of the integral.
     if (problem_.evaluator.dimensions() == 1)
         wanted = std::max(wanted, static_cast<std::uint64_t>(std::min(
                                       enough_in_bulk / volume_of_half(regions), most_points_of_line)));
@@ -278,18 +278,16 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
 void CubatureVerification::note_scattered_surprises(const CubatureRegions& regions) {
     if (problem_.evaluator.dimensions() == 1) return;
     for (std::size_t c = 0; c < scattered_.size(); ++c) {
-        std::vector<std::size_t> apart; // regions that do not touch one another
-        double sum = 0, count = 0;
+        double sum = 0;
+        std::uint64_t count = 0;
         for (const CubatureWitness& w : witnesses_) {
             const double height = surprise(regions, w.region, c, w.value[c], tolerance_[c]);
-            if (height == 0) continue;
             sum += height;
-            ++count;
-            if (std::ranges::none_of(apart, [&](std::size_t r) { return regions.touch(r, w.region); }))
-                apart.push_back(w.region);
+            count += height > 0;
         }
-        surprising_[c] += static_cast<std::uint64_t>(count);
-        if (count > 0 && surprising_[c] >= fewest_features && std::isfinite(sum)) scattered_[c] = sum / count;
+        surprising_[c] += count;
+        if (count > 0 && surprising_[c] >= fewest_features && std::isfinite(sum))
+            scattered_[c] = sum / static_cast<double>(count);
     }
 }
 

@@ -80,8 +80,8 @@ class CubatureVerification {
         return std::max({slack_.empty() ? 0.0 : slack_[component], shown_[component],
                          enough_points_ ? overlooked(component) : 0.0});
     }
-    // Whether there are several separate features, or surprises in several regions, so that there may be more of
-    // them, which further points find.
+    // Whether there are several separate features, or surprises, so that there may be more of them, which further points
+    // find.
     bool is_scattered() const {
         return std::ranges::any_of(scattered_, [](double size) { return size > 0; });
     }
@@ -106,7 +106,7 @@ class CubatureVerification {
     // Errors of regions whose points disagree with their rule, if the whole disagrees.
     void add_differences(CubatureRegions& regions, const CubatureCheck& check, std::size_t component);
     void add_errors(CubatureRegions& regions, std::span<const std::size_t> of_regions);
-    // Surprises in regions that are apart are parts of one long feature, or of many: there may be more of them.
+    // Several surprises are parts of one long feature, or of many: there may be more of them.
     void note_scattered_surprises(const CubatureRegions& regions);
     void note_drift(std::span<const double> value);
     // What one more feature that the last check met nowhere would hold.
@@ -132,9 +132,9 @@ class CubatureVerification {
     std::vector<double> slack_, shown_;
     std::vector<double> drift_;
     std::size_t features_ = 0;
-    // Mean height of several separate features, or of surprises in several regions; else 0.
+    // Mean height of several separate features, or of several surprises; else 0.
     std::vector<double> scattered_;
-    std::vector<std::uint64_t> surprising_; // separate regions with surprises, over all checks
+    std::vector<std::uint64_t> surprising_; // their number over all checks
     std::uint64_t checked_points_ = 0;
     bool enough_points_ = true; // for features of that size
     bool unsurprised_ = false;  // since before the last check

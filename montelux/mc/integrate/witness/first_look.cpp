@@ -205,7 +205,7 @@ class Look {
         return inner > 0 && (std::isinf(inner) || inner >= suspicious * outer);
     }
 
-    // Does no variable that moves go to an end?
+    // Whether no variable that moves goes to an end.
     static bool is_inside(const LadderPath& path) {
         for (std::size_t d = 0; d < path.side.size(); ++d)
             if (path.side[d] != 0 && (path.anchors[d].u == 0 || path.anchors[d].u == 1)) return false;
@@ -251,7 +251,7 @@ class Look {
     bool diverges_at_infinity(const LadderPath& path, std::size_t c) {
         const double finest = finest_at_origin / path.codimension();
         const ShellValues values = values_far_out(path, c);
-        // Infinite from half of the way on, by overflow.
+        // Overflow: infinite from half of the way on.
         const std::array<double, 3> far_out{0.5 * finest, 0.75 * finest, finest};
         const std::vector<double> g = values(far_out);
         return std::ranges::all_of(g, [](double v) { return std::isinf(v); }) ||

@@ -81,7 +81,7 @@ bool ridge_diverges(RawValues& raw, const std::vector<double>& u, const Magnitud
         }
         top.value = raw({top.u})[0];
         for (int k = 0; k < climbs; ++k) top = climb(raw, std::move(top), magnitude);
-        // What leads back out of the shell is the flank of a wide peak.
+        // A climb back out of the shell is one along the flank of a wide peak.
         for (std::size_t d = 0; d < u.size(); ++d)
             if (const double side = side_of(domain, u, d);
                 side != 0 &&
