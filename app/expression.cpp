@@ -56,14 +56,8 @@ mu::Parser make_parser(const std::vector<std::string>& variables, const NamedCon
     return parser;
 }
 
-bool starts_name(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
-bool in_name(char c) { return starts_name(c) || (c >= '0' && c <= '9'); }
-
 std::string name_at(const std::string& text, std::size_t at) {
-    std::size_t end = at;
-    if (at < text.size() && starts_name(text[at]))
-        while (end < text.size() && in_name(text[end])) ++end;
-    return text.substr(at, end - at);
+    return at < text.size() ? text.substr(at, name_length(std::string_view(text).substr(at))) : std::string();
 }
 
 [[noreturn]] void refuse(const std::string& option, const std::string& text, std::size_t at,

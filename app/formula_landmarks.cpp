@@ -23,13 +23,6 @@ struct Token {
 bool is_digit(char c) { return c >= '0' && c <= '9'; }
 bool is_letter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 
-std::size_t name_length(std::string_view text) {
-    std::size_t length = 0;
-    while (length < text.size() && (is_letter(text[length]) || (length > 0 && is_digit(text[length]))))
-        ++length;
-    return length;
-}
-
 // Length of a name and of the bracket behind it, or of either alone; 0 where there is neither.
 std::size_t operand_length(std::string_view text) {
     const std::size_t name = name_length(text);
@@ -177,6 +170,13 @@ class Reader {
 };
 
 } // namespace
+
+std::size_t name_length(std::string_view text) {
+    std::size_t length = 0;
+    while (length < text.size() && (is_letter(text[length]) || (length > 0 && is_digit(text[length]))))
+        ++length;
+    return length;
+}
 
 std::vector<std::vector<double>> formula_landmarks(const std::vector<std::string>& texts,
                                                    const std::vector<std::string>& variables,

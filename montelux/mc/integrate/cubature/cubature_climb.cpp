@@ -40,7 +40,7 @@ void CubatureClimb::from_hints() {
         const CubatureWitness& hint = check_.hints[k];
         if (std::ranges::any_of(tops, [&](const CubatureWitness& top) { return is_on_flank(hint, top); }))
             continue;
-        if (!climb(hint)) return;
+        if (!climb(hint)) continue;
         tops.push_back(check_.surprises.back());
     }
 }

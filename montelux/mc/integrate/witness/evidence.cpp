@@ -95,8 +95,9 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             Witness peak = witness;
             measure(raw, peak, magnitude);
             // A peak narrower than doubles can resolve holds about as much as their spacing does at its height.
-            const double narrow = is_rounding(peak) ? value * peak.volume : 0;
-            if (narrow == 0) look_.peaks.push_back(std::move(peak));
+            const bool rounds = is_rounding(peak);
+            const double narrow = rounds ? value * peak.volume : 0;
+            if (!rounds) look_.peaks.push_back(std::move(peak));
             // Far out in several variables ridges look like poles.
             const bool far = witness.u.size() > 1 && is_far_out(evaluator_.domain(), witness.u);
             const PoleReport pole =
