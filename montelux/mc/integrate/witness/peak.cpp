@@ -4,6 +4,8 @@
 #include <cmath>
 #include <utility>
 
+#include "montelux/mc/integrate/witness/shells.h"
+
 namespace montelux {
 namespace {
 

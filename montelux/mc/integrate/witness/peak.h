@@ -11,11 +11,6 @@
 
 namespace montelux {
 
-// Factor of all distances of looks: integrands have features at powers of two.
-inline constexpr double off_grid = 0.9;
-// From u to the end of the cube on a side.
-inline double reach(double u, double side) { return side > 0 ? 1 - u : u; }
-
 // One number for a row of components.
 using Magnitude = std::function<double(const std::vector<double>& values)>;
 

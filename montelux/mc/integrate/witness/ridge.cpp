@@ -5,6 +5,8 @@
 #include <cmath>
 #include <vector>
 
+#include "montelux/mc/integrate/witness/shells.h"
+
 namespace montelux {
 namespace {
 

@@ -14,6 +14,10 @@ namespace montelux {
 // Exponents of the smallest distances that a look takes: inside of the cube, and from an end that is the origin, where
 // doubles are denser; squares of such distances are still doubles.
 inline constexpr double finest_inside = 46, finest_at_origin = 400;
+// Factor of all distances of looks: integrands have features at powers of two.
+inline constexpr double off_grid = 0.9;
+// From u to the end of the cube on a side.
+inline double reach(double u, double side) { return side > 0 ? 1 - u : u; }
 // Exponent of the smallest distance around coordinate d = u of the unit cube that is far above the spacing of doubles, in
 // u and in x.
 double finest_exponent(const Domain& domain, std::size_t d, double u);
