@@ -236,11 +236,11 @@ class AdaptiveEstimator final : public Estimator {
     // Was a peak seen that points of this density do not explain?
     bool misses_a_peak(const MixtureDensity& density, const MixtureEstimate& estimate) const {
         if (!problem_.look || problem_.look->peaks.empty() || estimate.points() == 0) return false;
-        // Hits of an indicator tell of all of it.
-        if (density.gaussians().empty() && is_hit_indicator()) return false;
+        const bool indicator = density.gaussians().empty() && is_hit_indicator();
         Tally tally;
         estimate.tally(false, tally);
         for (const Witness& peak : problem_.look->peaks) {
+            if (indicator && trainer_.is_of_flat_size(peak.value)) continue; // hits tell of all of it
             const double q = pdf_at(density, peak.u);
             for (std::size_t c = 0; c < tally.value.size(); ++c) {
                 const double mass =

@@ -79,9 +79,16 @@ void DensityTrainer::start(SamplePoints&& points) {
         squares += v * v;
     }
     effective_share_ = squares > 0 ? sum * sum / squares / static_cast<double>(h.size()) : 0;
-    flat_where_nonzero_ = nonzero_ > 0 && sum * sum > flat_share * squares * static_cast<double>(nonzero_);
+    const double nonzero = static_cast<double>(nonzero_);
+    flat_size_ = nonzero_ > 0 && sum * sum > flat_share * squares * nonzero ? sum / nonzero : 0;
     recent_.clear();
     recent_.push_back({density_, std::move(points.x), std::move(h), std::move(points.density)});
+}
+
+bool DensityTrainer::is_of_flat_size(const std::vector<double>& values) const {
+    ValueBuffer g(1, static_cast<int>(values.size()));
+    for (std::size_t c = 0; c < values.size(); ++c) g.component(static_cast<int>(c))[0] = values[c];
+    return steering(g)[0] < 2 * flat_size_;
 }
 
 void DensityTrainer::find_peaks(std::uint64_t max_evaluations, int fruitless, std::uint64_t survey) {

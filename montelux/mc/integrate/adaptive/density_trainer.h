@@ -27,7 +27,9 @@ class DensityTrainer {
     std::uint64_t nonzero() const { return nonzero_; }
     double effective_share() const { return effective_share_; }
     // Are values of one size wherever they are not zero, as those of indicators?
-    bool flat_where_nonzero() const { return flat_where_nonzero_; }
+    bool flat_where_nonzero() const { return flat_size_ > 0; }
+    // Are these values of that size?
+    bool is_of_flat_size(const std::vector<double>& values) const;
 
     // Searches for peaks until this many searches in a row lead to known ones; evaluations() counts the cost.
     void find_peaks(std::uint64_t max_evaluations, int fruitless = ModeSearch().fruitless,
@@ -111,7 +113,8 @@ class DensityTrainer {
     WalkedPoints scouts_; // and of the last check
     std::vector<Check> checks_;
     int rounds_ = 0, walks_ = 0;
-    bool enriched_ = false, flat_where_nonzero_ = false;
+    bool enriched_ = false;
+    double flat_size_ = 0; // of values that are not zero; 0 where they differ
     double relative_variance_ = 0, effective_share_ = 0, uncovered_share_ = 0;
     std::uint64_t nonzero_ = 0, evaluations_ = 0, peaks_ = 0, searched_points_ = 0, search_evaluations_ = 0;
     NonFiniteCount non_finite_;

@@ -36,7 +36,7 @@ void DensityTrainer::save(StateWriter& state) const {
     state.put(rounds_);
     state.put(walks_);
     state.put(enriched_);
-    state.put(flat_where_nonzero_);
+    state.put(flat_size_);
     state.put(share_step_);
     state.put(relative_variance_);
     state.put(effective_share_);
@@ -86,7 +86,7 @@ void DensityTrainer::load(StateReader& state) {
     rounds_ = state.get<int>();
     walks_ = state.get<int>();
     enriched_ = state.get<int>() != 0;
-    flat_where_nonzero_ = state.get<int>() != 0;
+    flat_size_ = state.get_double();
     share_step_ = std::clamp(state.get<int>(), 1, MixtureDensity::units);
     relative_variance_ = state.get_double();
     effective_share_ = state.get_double();

@@ -147,7 +147,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
     if (tally.statistical) missed_of = unreached(look_.slow, missed_of.size(), density, points);
     for (std::size_t c = 0; c < tally.value.size(); ++c) {
         const double tolerance = std::max(request.tolerance(c, tally.value[c]), tally.standard_error[c]);
-        double worst = 0;
+        double worst = 0, expected = 0; // mass of a peak that points missed, or may have missed
         const Witness* where = nullptr;
         for (const auto* all : {&look_.peaks, &look_.witnesses})
             for (const Witness& w : *all) {
@@ -156,15 +156,17 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
                     return unexplained(w.value[c], w.volume, q, points, size_of(tally, c));
                 };
                 // Most witnesses are explained by any density.
-                if (!(mass_by(0x1p-4) > tolerance)) continue;
+                if (!(mass_by(0x1p-4) > tally.standard_error[c])) continue;
                 // A peak speaks for those within it.
                 if (all == &look_.witnesses && std::ranges::any_of(look_.peaks, [&](const Witness& peak) {
                         return lies_within(peak, w.u);
                     }))
                     continue;
-                const double mass = mass_by(density ? pdf_at(*density, w.u) : 1);
+                const double q = density ? pdf_at(*density, w.u) : 1, mass = mass_by(q);
+                expected = std::max(expected, mass * std::exp(-points * q * w.volume));
                 if (mass > worst) worst = mass, where = &w;
             }
+        least[c] = std::max(least[c], expected);
         std::array<char, 200> text;
         if (where && worst > tolerance) {
             std::snprintf(text.data(), text.size(),
@@ -186,12 +188,12 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         }
         if (!tally.statistical) continue;
         const auto [missed, at] = missed_of[c];
+        least[c] = std::hypot(least[c], missed);
         if (at && missed > tolerance) {
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than the points reach", missed,
                           place(at->shells.back().u).substr(5).c_str());
             tally.warnings.emplace_back(text.data());
-            least[c] = std::hypot(least[c], missed);
         }
     }
     raise_standard_errors(least, tally);

@@ -36,8 +36,8 @@ class Evidence {
     void examine(const Tally& tally, std::uint64_t most_evaluations);
     // Where the integral does not exist, or converges too slowly to tell; empty if it seems to exist.
     const std::string& divergence() const { return divergence_; }
-    // Raises errors by what doubles do not resolve at poles, and warns of it and of peaks that points of `density` (null:
-    // uniform points) do not explain.
+    // Raises errors to what points of `density` (null: uniform points) are expected to miss of known peaks, and by what
+    // doubles do not resolve at poles; warns of what exceeds the target.
     void judge(const UnitDensity* density, const StepRequest& request, Tally& tally) const;
 
     void save(StateWriter& state) const;

@@ -103,6 +103,22 @@ TEST(Adaptive, EveryPhaseResumesWithTheSameBitsAndCanBeInterrupted) {
     EXPECT_EQ(check_every_step(ridge, {200'000, 1e-3}), (std::set<std::uint64_t>{0, 1, 2, 3}));
 }
 
+TEST(Adaptive, ResultsOfUniformPointsAreNotJudgedByTheTrainedDensity) {
+    const KnownIntegral problem = two_peaks(6, 300);
+    const Evaluator evaluator(problem.f, problem.domain);
+    auto estimator = Adaptive{}.estimator({evaluator, 11});
+    std::set<std::uint64_t> phases;
+    while (step(*estimator, {60'000}) == StepOutcome::advanced) {
+        const std::uint64_t phase = words_of(*estimator).front();
+        phases.insert(phase);
+        if (phase < 3) {
+            EXPECT_EQ(estimator->sampled_density(), nullptr) << phase;
+        }
+    }
+    EXPECT_NE(estimator->sampled_density(), nullptr);
+    EXPECT_TRUE(phases.contains(2) && phases.contains(3)); // trained, then sampled
+}
+
 TEST(Adaptive, DamagedStatesAreRefused) {
     const KnownIntegral problem = discontinuous();
     const Evaluator evaluator(problem.f, problem.domain);
