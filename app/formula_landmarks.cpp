@@ -4,12 +4,15 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <numeric>
 #include <optional>
+#include <utility>
 
 namespace montelux::app {
 namespace {
 
-constexpr std::size_t most_roots = 8;        // of a variable
+constexpr std::size_t most_roots = 8;        // of the forms of one bracket
 constexpr std::size_t most_of_operand = 256; // characters
 
 struct Token {
@@ -69,6 +72,56 @@ std::vector<Token> tokens_of(std::string_view text, const std::vector<std::strin
     return tokens;
 }
 
+// factor x + constant.
+struct LinearForm {
+    std::vector<double> factor;
+    double constant = 0;
+    std::size_t group = 0; // forms of one bracket, such as those of (x-1)^2+(y-2)^2
+};
+
+// The point closest to the origin where independent forms are zero, as many of them in turn as there can be.
+class CommonRoot {
+  public:
+    explicit CommonRoot(std::size_t variables) : point_(variables, 0.0) {}
+
+    // False, without effect, where the form depends on earlier ones (by Gram and Schmidt's orthogonalisation).
+    bool add(const LinearForm& form) {
+        constexpr double dependent = 1e-9;
+        std::vector<double> row(form.factor);
+        for (const std::vector<double>& other : rows_) {
+            const double along = std::inner_product(row.begin(), row.end(), other.begin(), 0.0);
+            for (std::size_t d = 0; d < row.size(); ++d) row[d] -= along * other[d];
+        }
+        const double length = norm(row);
+        if (!(length > dependent * norm(form.factor))) return false;
+        const double value =
+            std::inner_product(form.factor.begin(), form.factor.end(), point_.begin(), form.constant);
+        for (std::size_t d = 0; d < row.size(); ++d) {
+            row[d] /= length;
+            point_[d] -= value / length * row[d];
+        }
+        rows_.push_back(std::move(row));
+        return true;
+    }
+    const std::vector<double>& point() const { return point_; }
+
+  private:
+    static double norm(const std::vector<double>& v) {
+        return std::sqrt(std::inner_product(v.begin(), v.end(), v.begin(), 0.0));
+    }
+    std::vector<double> point_;
+    std::vector<std::vector<double>> rows_; // orthonormal
+};
+
+// Common roots of the first independent forms, of the first of those that are left, and so on.
+void add_roots(std::vector<LinearForm> forms, const std::function<void(std::vector<double>)>& add_point) {
+    for (std::size_t i = 0; i < most_roots && !forms.empty(); ++i) {
+        CommonRoot root(forms.front().factor.size());
+        std::erase_if(forms, [&](const LinearForm& form) { return root.add(form); });
+        add_point(root.point());
+    }
+}
+
 // One formula.
 class Reader {
   public:
@@ -84,28 +137,24 @@ class Reader {
         }
     }
 
-    // Roots of sums and comparisons of a number and a multiple of a variable.
-    void add_roots(const std::function<void(std::size_t, double)>& add) const {
-        for (std::size_t i = 0; i < tokens_.size(); ++i) {
-            if (i > 0 && !begins_term(i - 1)) continue;
-            std::size_t next = i;
-            const std::optional<Term> a = term(next);
-            if (!a || next + 1 >= tokens_.size()) continue;
-            const bool sum = is_symbol(next, '+'), compares = is_symbol(next, '<') || is_symbol(next, '>');
-            if (!sum && !compares && !is_symbol(next, '-')) continue;
-            ++next;
-            if (compares && is_symbol(next, '=')) ++next;
-            double sign = sum ? 1 : -1;
-            if (compares && is_symbol(next, '-')) {
-                sign = 1;
-                ++next;
+    // Linear forms: sums of numbers and multiples of variables, and differences of two that are compared.
+    void add_forms(std::size_t variables, std::vector<LinearForm>& forms) const {
+        std::vector<std::size_t> open; // brackets
+        for (std::size_t i = 0; i < tokens_.size();) {
+            const std::size_t begin = i;
+            LinearForm form{std::vector<double>(variables, 0.0)};
+            if ((i == 0 || begins_term(i - 1) || is_sign(i)) && add_sum(i, 1, form)) {
+                if (const std::size_t before = i; skip_comparison(i) && !add_sum(i, -1, form)) i = before;
+                // The bracket around the one in which the form stands.
+                if (open.size() > 1) form.group = open[open.size() - 2] + 1;
+                if (std::ranges::any_of(form.factor, [](double v) { return v != 0; }))
+                    forms.push_back(std::move(form));
+                continue;
             }
-            const std::optional<Term> b = term(next);
-            if (!b || a->of_variable == b->of_variable) continue;
-            if (is_symbol(i - 1, '-')) sign = -sign;
-            const Term& constant = a->of_variable ? *b : *a;
-            const Term& multiple = a->of_variable ? *a : *b;
-            add(multiple.variable, -sign * constant.factor / multiple.factor);
+            i = begin;
+            if (is_symbol(i, '(')) open.push_back(i);
+            if (is_symbol(i, ')') && !open.empty()) open.pop_back();
+            ++i;
         }
     }
 
@@ -125,6 +174,28 @@ class Reader {
     // False beyond either end.
     bool is_symbol(std::size_t i, char c) const {
         return i < tokens_.size() && tokens_[i].kind == Token::Kind::symbol && tokens_[i].symbol == c;
+    }
+    bool is_sign(std::size_t i) const { return is_symbol(i, '+') || is_symbol(i, '-'); }
+    // Moves behind <, >, <= and the like.
+    bool skip_comparison(std::size_t& i) const {
+        const std::size_t begin = i;
+        while (is_symbol(i, '<') || is_symbol(i, '>') || is_symbol(i, '=')) ++i;
+        return i > begin;
+    }
+    // Adds the linear terms from `i` on, and moves behind them; false where there is none.
+    bool add_sum(std::size_t& i, double sign, LinearForm& form) const {
+        bool any = false;
+        for (std::size_t next = i; next < tokens_.size(); any = true, i = next) {
+            double factor = sign;
+            if (is_sign(next))
+                factor = is_symbol(next++, '-') ? -sign : sign;
+            else if (any)
+                break;
+            const std::optional<Term> t = term(next);
+            if (!t) break;
+            (t->of_variable ? form.factor[t->variable] : form.constant) += factor * t->factor;
+        }
+        return any;
     }
     bool begins_term(std::size_t i) const {
         return tokens_[i].kind == Token::Kind::symbol &&
@@ -181,24 +252,32 @@ std::size_t name_length(std::string_view text) {
 std::vector<std::vector<double>> formula_landmarks(const std::vector<std::string>& texts,
                                                    const std::vector<std::string>& variables,
                                                    const std::function<double(std::string_view)>& value_of) {
-    std::vector<std::vector<double>> points, roots(variables.size());
+    std::vector<std::vector<double>> points;
     auto add_point = [&](std::vector<double> x) {
         const bool finite = std::ranges::all_of(x, [](double v) { return std::isfinite(v); });
-        if (finite && std::ranges::find(points, x) == points.end()) points.push_back(std::move(x));
+        const bool origin = std::ranges::all_of(x, [](double v) { return v == 0; });
+        if (finite && !origin && std::ranges::find(points, x) == points.end()) points.push_back(std::move(x));
     };
     std::vector<Reader> readers;
     for (const std::string& text : texts) readers.emplace_back(tokens_of(text, variables, value_of));
-    for (const Reader& reader : readers)
-        reader.add_roots([&](std::size_t d, double root) {
-            if (roots[d].size() < most_roots) roots[d].push_back(root);
-        });
-    std::size_t most = 0;
-    for (const auto& of_variable : roots) most = std::max(most, of_variable.size());
-    for (std::size_t i = 0; i < most; ++i) {
-        std::vector<double> x;
-        for (const auto& of_variable : roots) x.push_back(i < of_variable.size() ? of_variable[i] : 0);
-        add_point(std::move(x));
+    std::vector<LinearForm> all;
+    for (const Reader& reader : readers) {
+        std::vector<LinearForm> forms;
+        reader.add_forms(variables.size(), forms);
+        while (!forms.empty()) {
+            const std::size_t group = forms.front().group;
+            std::vector<LinearForm> of_group;
+            std::ranges::copy_if(forms, std::back_inserter(of_group),
+                                 [&](const LinearForm& form) { return form.group == group; });
+            std::erase_if(forms, [&](const LinearForm& form) { return form.group == group; });
+            std::ranges::copy(of_group, std::back_inserter(all));
+            add_roots(std::move(of_group), add_point);
+        }
     }
+    add_roots(all, add_point);
+    for (const LinearForm& form : all) add_roots({form}, add_point);
+    for (const LinearForm& form : all)
+        if (form.constant == 0) add_point(form.factor);
     for (const Reader& reader : readers)
         reader.add_numbers([&](double value) {
             for (double v : {value, -value}) add_point(std::vector<double>(variables.size(), v));

@@ -83,9 +83,9 @@ class Pixel {
     void end_replicate() {
         if (replicate_samples_ == 0) return;
         const Vec3d replicate = replicate_sum_ / static_cast<double>(replicate_samples_);
-        replicates_.add(replicate);
-        if (replicates_.count() == 1 || dot(replicate, luminance_weight) > dot(brightest_, luminance_weight))
+        if (replicates_.count() == 0 || dot(replicate, luminance_weight) > dot(brightest_, luminance_weight))
             brightest_ = replicate;
+        replicates_.add(replicate);
         replicate_sum_ = {};
         replicate_samples_ = 0;
     }

@@ -31,6 +31,9 @@ value 2 0.01 'e' --over e=0:2 # a variable may be called like a constant
 value 6.5973446 0.03 'exp(-(x^2+y^2)/2)+1e5*exp(-1e6*((x-0.37)^2+(0.61+y)^2))' --over x,y=-5:5 --relative-error 1e-3
 value 1.4322889 0.003 'cos(x)+1e4*exp(-((3*x-1)*1e4)^2)' --over x=0:1 --relative-error 1e-3
 value 1.0886227 0.003 '1+500*exp(-((x-sqrt(0.37))/1e-4)^2)' --over x=0:1 --relative-error 1e-3
+value 12.566371 0.03 'exp(-((x-3)^2+y^2)/2)+1e4*exp(-5000*((x+4)^2+(y-2)^2))' --over x,y=-10:10 --relative-error 1e-3
+value 9.424778 0.03 'exp(-(x^2+y^2)/2)+1e4*exp(-((x+y-4)^2+(x-y+2.5)^2)/2e-4)' --over x,y=-10:10 --relative-error 1e-3
+value 9.93449 0.03 'max(0,z)+(0.6*x+0.8*z>cos(0.00465) ? 1e5 : 0)' --over x,y,z --domain sphere --relative-error 1e-3
 # A warning takes back the claim, and says so.
 expect 3 "error target reached, but with a warning" integrate 'sqrt(x)' --over x=-1:1 --relative-error 1e-2
 # A leading minus sign begins a formula, not an option; option values and what follows '--' are left alone.

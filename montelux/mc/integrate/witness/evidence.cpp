@@ -97,7 +97,11 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             // A peak narrower than doubles can resolve holds about as much as their spacing does at its height.
             const bool rounds = is_rounding(peak);
             const double narrow = rounds ? value * peak.volume : 0;
-            if (!rounds) look_.peaks.push_back(std::move(peak));
+            if (!rounds) {
+                for (Witness& other : opposite_peaks(raw, peak, magnitude))
+                    look_.peaks.push_back(std::move(other));
+                look_.peaks.push_back(std::move(peak));
+            }
             // Far out in several variables ridges look like poles.
             const bool far = witness.u.size() > 1 && is_far_out(evaluator_.domain(), witness.u);
             const PoleReport pole =
@@ -105,7 +109,7 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
                     : search_pole(raw, witness, c);
             known = {pole.u, value, std::max(pole.unresolved, narrow)};
             if (pole.diverges && (far || !is_far_out(evaluator_.domain(), pole.u)) && divergence_.empty())
-                divergence_ = place(pole.u);
+                divergence_ = place_text(evaluator_.domain(), pole.u);
             note_slow(pole.slow);
             evaluations_ += raw.evaluations();
         }
@@ -121,23 +125,6 @@ void Evidence::note_slow(const SlowShells& slow) {
         return true;
     });
     if (!known) look_.slow.push_back(slow);
-}
-
-std::string Evidence::place(std::span<const double> at) const {
-    const Domain& domain = evaluator_.domain();
-    PointBuffer u(1, evaluator_.dimensions()), x(1, domain.dimensions());
-    for (int d = 0; d < u.dimensions(); ++d) u(0, d) = at[static_cast<std::size_t>(d)];
-    std::array<double, 1> volume{1};
-    domain.map(u, x, volume);
-    std::string text = domain.dimensions() > 1 ? "(" : "";
-    constexpr int most = 8;
-    for (int d = 0; d < std::min(most, domain.dimensions()); ++d) {
-        std::array<char, 32> number;
-        std::snprintf(number.data(), number.size(), "%s%.6g", d > 0 ? ", " : "", x.view()(0, d));
-        text += number.data();
-    }
-    if (domain.dimensions() > most) text += ", ...";
-    return "x -> " + text + (domain.dimensions() > 1 ? ")" : "");
 }
 
 void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tally& tally) const {
@@ -171,7 +158,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         if (where && worst > tolerance) {
             std::snprintf(text.data(), text.size(),
                           "a peak at %s, seen but hardly sampled, may hold %.2g or more of the integral",
-                          place(where->u).substr(5).c_str(), worst);
+                          place_text(evaluator_.domain(), where->u).substr(5).c_str(), worst);
             tally.warnings.emplace_back(text.data());
             least[c] = std::max(least[c], worst);
         }
@@ -179,7 +166,9 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         const double unresolved = std::max(examined_[c].unresolved, at_ends);
         if (unresolved > tolerance) {
             const std::string pole =
-                unresolved == at_ends ? "an end" : "the peak or pole at " + place(examined_[c].u).substr(5);
+                unresolved == at_ends
+                    ? "an end"
+                    : "the peak or pole at " + place_text(evaluator_.domain(), examined_[c].u).substr(5);
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than doubles can tell", unresolved,
                           pole.c_str());
@@ -192,7 +181,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         if (at && missed > tolerance) {
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than the points reach", missed,
-                          place(at->shells.back().u).substr(5).c_str());
+                          place_text(evaluator_.domain(), at->shells.back().u).substr(5).c_str());
             tally.warnings.emplace_back(text.data());
         }
     }

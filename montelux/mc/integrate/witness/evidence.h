@@ -49,7 +49,6 @@ class Evidence {
         std::vector<double> u; // empty before the first examination
         double size = 0, unresolved = 0;
     };
-    std::string place(std::span<const double> u) const;
     void note_slow(const SlowShells& slow);
 
     Evaluator& evaluator_;

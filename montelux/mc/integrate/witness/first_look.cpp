@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -93,7 +94,7 @@ class Look {
         for (std::size_t p = 0; p < walked; ++p)
             for (std::size_t c = 0; c < components(); ++c)
                 if (is_suspicious(paths[p], rows, p * ladder.size(), c)) {
-                    if (diverges(paths[p], c)) {
+                    if (!is_negligible(paths[p], rows, p * ladder.size(), c) && diverges(paths[p], c)) {
                         look_.divergence = place_of(paths[p]);
                         return;
                     }
@@ -201,8 +202,20 @@ class Look {
             return std::isnan(g) ? 0
                                  : g * std::exp2(-path.codimension() * ladder[i] * finest / ladder.back());
         };
-        const double inner = std::max(mass(4), mass(5)), outer = std::max(mass(2), mass(3));
-        return inner > 0 && (std::isinf(inner) || inner >= suspicious * outer);
+        const double inner = std::max(mass(4), mass(5));
+        return inner > 0 && (std::isinf(inner) || inner >= suspicious * mass(3));
+    }
+
+    // Whether all shells like the innermost ones hold less than the rounding of what was seen elsewhere.
+    bool is_negligible(const LadderPath& path, const std::vector<std::vector<double>>& rows,
+                       std::size_t first, std::size_t c) const {
+        const double finest = std::min(path.finest(), ladder.back());
+        double inner = 0, most = 0;
+        for (std::size_t i : {4, 5})
+            inner = std::max(inner, std::abs(rows[first + i][c]) *
+                                        path.volume(ladder[i] * finest / ladder.back(), paths_.widths(path)));
+        for (const Witness& w : look_.witnesses) most = std::max(most, std::abs(w.value[c]) * w.volume);
+        return finest_at_origin * inner < std::numeric_limits<double>::epsilon() * most;
     }
 
     // Whether no variable that moves goes to an end.
@@ -314,6 +327,8 @@ class Look {
                 std::clamp(path.anchors[d].u, std::numeric_limits<double>::min(), 1 - 0x1p-53);
         std::array<double, 1> volume{1};
         domain.map(u, x, volume);
+        if (domain.ranges().empty() && std::ranges::none_of(path.side, [](double side) { return side == 0; }))
+            return place_text(domain, path.at(ladder.back()));
         std::string place;
         for (std::size_t d = 0; d < n_; ++d) {
             if (path.side[d] == 0) continue;
@@ -363,7 +378,7 @@ class Look {
         for (std::size_t i : from) starts.push_back(look_.witnesses[i]);
         std::ranges::sort(starts, std::greater{}, [&](const Witness& w) { return size(w.value); });
         for (const Witness& start : starts) {
-            if (look_.peaks.size() == most_peaks || !affordable(40 * n_)) break;
+            if (look_.peaks.size() >= most_peaks || !affordable(40 * n_)) break;
             if (!(size(start.value) > outstanding * median)) break;
             if (std::ranges::any_of(look_.peaks, [&](const Witness& p) { return belongs(start, p); }))
                 continue;
@@ -371,7 +386,10 @@ class Look {
             Witness top = climb(raw_, start, magnitude);
             if (std::ranges::any_of(look_.peaks, [&](const Witness& p) { return belongs(top, p); })) continue;
             measure(raw_, top, magnitude);
-            if (!is_rounding(top)) look_.peaks.push_back(std::move(top));
+            if (is_rounding(top)) continue;
+            std::vector<Witness> opposite = opposite_peaks(raw_, top, magnitude);
+            look_.peaks.push_back(std::move(top));
+            std::ranges::move(opposite, std::back_inserter(look_.peaks));
         }
     }
 
@@ -402,6 +420,26 @@ class Look {
 
 FirstLook first_look(const Evaluator& evaluator, const LookSettings& settings) {
     return Look(evaluator, settings)();
+}
+
+std::string place_text(const Domain& domain, std::span<const double> at) {
+    PointBuffer u(1, static_cast<int>(at.size())), x(1, domain.dimensions());
+    for (int d = 0; d < u.dimensions(); ++d) u(0, d) = at[static_cast<std::size_t>(d)];
+    std::array<double, 1> volume{1};
+    domain.map(u, x, volume);
+    constexpr double rounding = 1e-12; // beside the largest coordinate
+    double largest = 0;
+    for (int d = 0; d < domain.dimensions(); ++d) largest = std::max(largest, std::abs(x.view()(0, d)));
+    std::string text = domain.dimensions() > 1 ? "(" : "";
+    constexpr int most = 8;
+    for (int d = 0; d < std::min(most, domain.dimensions()); ++d) {
+        std::array<char, 32> number;
+        std::snprintf(number.data(), number.size(), "%s%.6g", d > 0 ? ", " : "",
+                      std::abs(x.view()(0, d)) < rounding * largest ? 0 : x.view()(0, d));
+        text += number.data();
+    }
+    if (domain.dimensions() > most) text += ", ...";
+    return "x -> " + text + (domain.dimensions() > 1 ? ")" : "");
 }
 
 } // namespace montelux

@@ -43,4 +43,7 @@ struct LookSettings {
 // one counts as a shell that grows, NaN as nothing.
 FirstLook first_look(const Evaluator& evaluator, const LookSettings& settings = {});
 
+// A point of the cube as "x -> (0.3, 0.7)", in the domain's coordinates.
+std::string place_text(const Domain& domain, std::span<const double> u);
+
 } // namespace montelux

@@ -62,33 +62,84 @@ LadderPaths::LadderPaths(const Domain& domain, std::size_t dimensions,
             anchors_[d].push_back(a);
         }
     }
-    if (ranges.empty()) return;
     for (const std::vector<double>& x : landmarks)
-        if (x.size() != n_)
+        if (const auto n = static_cast<std::size_t>(domain_.dimensions()); x.size() != n)
             throw Error("integrate", "a landmark has " + std::to_string(x.size()) +
-                                         " coordinates; expected " + std::to_string(n_) +
+                                         " coordinates; expected " + std::to_string(n) +
                                          ", one per variable");
-    const std::vector<double> origin(n_, 0.0);
-    for (std::size_t i = 0; i <= landmarks.size() && places_.size() < most_anchors; ++i) {
-        const std::vector<double>& x = i == 0 ? origin : landmarks[i - 1];
-        std::vector<Anchor> place;
-        bool inside = false;
-        for (std::size_t d = 0; d < n_; ++d) {
-            Anchor a = anchors_[d][2];
-            if (x[d] > ranges[d].lower && x[d] < ranges[d].upper)
-                if (const Anchor here = anchor(d, x[d]); here.u > 0 && here.u < 1) {
-                    a = here;
-                    inside = true;
-                }
-            place.push_back(a);
-            if (std::ranges::none_of(anchors_[d], [&](const Anchor& b) { return are_near(a, b); }))
-                anchors_[d].push_back(a);
-        }
-        const auto is_place = [&](const std::vector<Anchor>& other) {
-            return std::ranges::equal(place, other, are_near);
-        };
-        if (inside && std::ranges::none_of(places_, is_place)) places_.push_back(std::move(place));
+    if (!ranges.empty()) add_place(place_in_ranges(std::vector<double>(n_, 0.0)));
+    for (std::size_t i = 0; i < landmarks.size() && places_.size() < most_anchors; ++i)
+        add_place(ranges.empty() ? nearest_place(landmarks[i]) : place_in_ranges(landmarks[i]));
+}
+
+void LadderPaths::add_place(std::vector<Anchor> place) {
+    for (std::size_t d = 0; d < place.size(); ++d)
+        if (std::ranges::none_of(anchors_[d], [&](const Anchor& b) { return are_near(place[d], b); }))
+            anchors_[d].push_back(place[d]);
+    const auto is_place = [&](const std::vector<Anchor>& other) {
+        return std::ranges::equal(place, other, are_near);
+    };
+    if (!place.empty() && std::ranges::none_of(places_, is_place)) places_.push_back(std::move(place));
+}
+
+std::vector<Anchor> LadderPaths::place_in_ranges(const std::vector<double>& x) const {
+    const std::span<const Range> ranges = domain_.ranges();
+    std::vector<Anchor> place;
+    bool inside = false;
+    for (std::size_t d = 0; d < n_; ++d) {
+        place.push_back(anchors_[d][2]);
+        if (!(x[d] > ranges[d].lower && x[d] < ranges[d].upper)) continue;
+        const Anchor here = anchor(d, x[d]);
+        if (!(here.u > 0 && here.u < 1)) continue;
+        place.back() = here;
+        inside = true;
     }
+    return inside ? place : std::vector<Anchor>();
+}
+
+std::vector<Anchor> LadderPaths::nearest_place(const std::vector<double>& x) const {
+    constexpr std::size_t scattered = 256;
+    constexpr int most_steps = 400;
+    const int n = static_cast<int>(n_);
+    std::vector<double> best(n_, 0.5);
+    double least = std::numeric_limits<double>::infinity();
+    // The nearest of these points of the cube, if nearer than the best one.
+    const auto improves = [&](const PointBuffer& u) {
+        PointBuffer at(u.count(), domain_.dimensions());
+        std::vector<double> volumes(u.count(), 1.0);
+        domain_.map(u, at, volumes);
+        const double before = least;
+        for (std::size_t i = 0; i < u.count(); ++i) {
+            double squares = 0;
+            for (std::size_t d = 0; d < x.size(); ++d)
+                squares += std::pow(at.view()(i, static_cast<int>(d)) - x[d], 2);
+            if (!(squares < least)) continue;
+            least = squares;
+            for (int d = 0; d < n; ++d) best[static_cast<std::size_t>(d)] = u.view()(i, d);
+        }
+        return least < before;
+    };
+    PointBuffer u(scattered, n);
+    for (std::size_t i = 0; i < scattered; ++i)
+        for (int d = 0; d < n; ++d)
+            u(i, d) = static_cast<double>(hash_key(i, static_cast<std::uint64_t>(d)) >> 11) * 0x1p-53;
+    improves(u);
+    // Compass search (Kolda, Lewis and Torczon 2003, "Optimization by direct search").
+    PointBuffer around(2 * n_, n);
+    int exponent = 3;
+    for (int step = 0; step < most_steps && exponent < finest_inside; ++step) {
+        for (std::size_t i = 0; i < around.count(); ++i)
+            for (int d = 0; d < n; ++d) {
+                const double center = best[static_cast<std::size_t>(d)];
+                const double by =
+                    d == static_cast<int>(i / 2) ? std::ldexp(i % 2 ? 1.0 : -1.0, -exponent) : 0;
+                around(i, d) = std::clamp(center + by, 0.0, 1.0);
+            }
+        if (!improves(around)) ++exponent;
+    }
+    std::vector<Anchor> place;
+    for (double c : best) place.push_back({c, finest_inside});
+    return place;
 }
 
 Anchor LadderPaths::anchor(std::size_t d, double x) const {

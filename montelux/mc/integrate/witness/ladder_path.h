@@ -37,7 +37,8 @@ struct LadderPath {
 // The ladders of one look. (seed, order of the calls) determine what is random.
 class LadderPaths {
   public:
-    // `landmarks`: points near which features may lie; a coordinate outside of its range stands for the range's centre.
+    // `landmarks`: points near which features may lie. Of a box, a coordinate outside of its range stands for the range's
+    // centre; of another domain, a point stands for the nearest one.
     LadderPaths(const Domain& domain, std::size_t dimensions, std::span<const std::vector<double>> landmarks,
                 std::uint64_t seed);
 
@@ -59,6 +60,11 @@ class LadderPaths {
   private:
     double random();
     Anchor anchor(std::size_t d, double x) const;
+    // Empty where no coordinate is inside.
+    std::vector<Anchor> place_in_ranges(const std::vector<double>& x) const;
+    std::vector<Anchor> nearest_place(const std::vector<double>& x) const;
+    // Unless it is one already, or empty.
+    void add_place(std::vector<Anchor> place);
     LadderPath to_corner(const std::vector<double>& place, std::vector<int> rates = {}) const;
 
     const Domain& domain_;

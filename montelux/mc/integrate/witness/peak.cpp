@@ -71,6 +71,21 @@ bool is_rounding(const Witness& top) {
     return false;
 }
 
+std::vector<Witness> opposite_peaks(RawValues& raw, const Witness& peak, const Magnitude& magnitude) {
+    constexpr double near = 8; // extents
+    std::vector<Witness> found;
+    for (std::size_t d = 0; d < peak.u.size(); ++d) {
+        if (!(std::min(peak.u[d], 1 - peak.u[d]) < near * peak.extent[d])) continue;
+        Witness opposite{peak.u, {}};
+        opposite.u[d] = std::min(1 - peak.u[d], 1 - 0x1p-53);
+        opposite.value = raw({opposite.u})[0];
+        if (!(magnitude(opposite.value) > 0.5 * magnitude(peak.value))) continue;
+        measure(raw, opposite, magnitude);
+        if (!is_rounding(opposite)) found.push_back(std::move(opposite));
+    }
+    return found;
+}
+
 double unexplained(double value, double volume, double q, double points, double size) {
     const double mass = part * std::abs(value) * volume;
     if (!(std::abs(value) > ordinary * q * size) || !(points * q * volume < enough_points)) return 0;

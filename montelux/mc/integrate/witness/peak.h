@@ -24,6 +24,10 @@ void measure(RawValues& raw, Witness& top, const Magnitude& magnitude, int finer
 // Tells a value that only a few neighbouring numbers have, as where a pole's distance is rounded to zero, from a peak.
 bool is_rounding(const Witness& top);
 
+// Peaks of like height at the other end of a variable close to whose one end a peak lies, measured: the ends of an angle
+// are one place.
+std::vector<Witness> opposite_peaks(RawValues& raw, const Witness& peak, const Magnitude& magnitude);
+
 // Lower bound on the integral of |g| over a peak of this value that points of density q have hardly seen: fewer than
 // eight of `points` are expected within its volume, although the weight |g| / q there is far above `size`, the
 // integral of |g| as claimed. 0 where the points explain the peak.

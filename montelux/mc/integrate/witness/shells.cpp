@@ -13,8 +13,9 @@ constexpr double outer_from = 0.35, outer_to = 0.5, inner_from = 0.75, inner_to 
 // Ratio of the means for masses that fall like 1 / k.
 constexpr double harmonic = (outer_from + outer_to) / (inner_from + inner_to);
 constexpr double noise = 0.93; // factor for masses that oscillate
-constexpr double steady_ratio =
-    0.25; // least ratio of the masses of the last third of the inner range and of that before
+// Ratio of the masses of the last third of the inner range and of that before: the least where the whole range does not
+// fall, and one that tells by itself, of a pole that the outer range cannot see beside the rest of the integrand.
+constexpr double steady_ratio = 0.25, constant_ratio = 0.98;
 // Growth of |g| over three octaves towards a pole; four times that for each variable more.
 constexpr double least_growth = 3;
 constexpr double coarsest = 6; // least exponent of the innermost shells
@@ -84,8 +85,8 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     const double octaves = std::min(3.0, inner[shells - 1] - inner[shells - 4]);
     const double growth = std::pow(least_growth * std::exp2(2 * (codimension - 1)), octaves / 3);
     // Within the inner range, too: the outer one may lie beyond all that is there.
-    return sum_inner > 0 && last >= growth * earlier && sum_inner >= noise * harmonic * sum_outer &&
-           innermost >= steady_ratio * before;
+    if (!(sum_inner > 0 && last >= growth * earlier)) return false;
+    return innermost >= (sum_inner >= noise * harmonic * sum_outer ? steady_ratio : constant_ratio) * before;
 }
 
 } // namespace

@@ -100,6 +100,44 @@ TEST(FirstLook, FindsPeaksAtPointsOfLandmarks) {
                  Error);
 }
 
+// A lobe around a direction at which the azimuth begins and ends: half of it lies at either end.
+TEST(FirstLook, FindsPeaksAtLandmarksOfShapes) {
+    const auto lobe = [](std::span<const double> x) { return std::exp(1e6 * (0.6 * x[0] + 0.8 * x[1] - 1)); };
+    const FirstLook look = look_at(lobe, Domain::sphere({0, 0, 0}), {{1.2, 1.6, 0}});
+    ASSERT_EQ(look.peaks.size(), 2u);
+    for (const Witness& peak : look.peaks) EXPECT_NEAR(peak.u[0], 0.2, 1e-3);
+    EXPECT_NEAR(std::abs(look.peaks[0].u[1] - look.peaks[1].u[1]), 1, 1e-3);
+    const auto inside = [](std::span<const double> x) {
+        return 1 + 1e6 * std::exp(-1e6 * (std::pow(x[0] - 0.3, 2) + std::pow(x[1] + 0.5, 2) + x[2] * x[2]));
+    };
+    EXPECT_EQ(look_at(inside, Domain::ball({0, 0, 0}), {{0.3, -0.5, 0}}).peaks.size(), 1u);
+    EXPECT_THROW(look_at(inside, Domain::ball({0, 0, 0}), {{0.3, -0.5}}), Error);
+    EXPECT_EQ(look_at([](std::span<const double> x) { return 1 / (1 - x[2]); }, Domain::sphere({0, 0, 0}),
+                      {{0, 0, 1}})
+                  .divergence,
+              "x -> (0, 0, 1)");
+}
+
+// A pole that holds little of the integral diverges all the same; a lobe that only rises from nothing does not.
+TEST(FirstLook, TellsDivergenceOfAnySizeButOfRounding) {
+    for (double power : {1.0, 0.99, 0.95}) {
+        const auto pole = [=](double x) { return 1 + 1e-6 * std::pow(std::abs(x - 0.7), -power); };
+        EXPECT_EQ(look_at(pole, Domain::interval(0, 1), {{0.7}}).divergence, power == 1 ? "x -> 0.7" : "");
+    }
+    for (int n : {4, 5}) {
+        std::vector<double> direction(static_cast<std::size_t>(n), 0.0);
+        direction[0] = 0.6;
+        direction[3] = 0.8;
+        const auto lobe = [&](std::span<const double> x) {
+            return std::exp(1000 * (0.6 * x[0] + 0.8 * x[3] - 1));
+        };
+        const Evaluator sphere(Integrand(lobe), Domain::sphere(std::vector<double>(direction.size(), 0.0)));
+        const std::vector<std::vector<double>> landmarks{direction};
+        for (std::uint64_t seed = 0; seed < 20; ++seed)
+            EXPECT_EQ(first_look(sphere, {.landmarks = landmarks, .seed = seed}).divergence, "") << seed;
+    }
+}
+
 TEST(FirstLook, TellsDivergenceByOverflowAndBeforeValuesEnd) {
     EXPECT_EQ(look_at([](double x) { return std::exp(x * x); }, Domain::interval(0, infinity)).divergence,
               "x -> inf");
