@@ -37,7 +37,8 @@ void assess(CubatureRegions& fresh, std::size_t r, const SymmetricRule& rule,
         const SymmetricRule::Assessment found = rule.assess(nulls, rounding);
         // Without its middle the odd 1/x would integrate to zero: zeros beside other values may be poles.
         const double pole = not_finite ? largest : 0;
-        const double error = std::max(found.error + rule.edge_surprise(values[c]), pole);
+        const double error = std::max(
+            {found.error + rule.edge_surprise(values[c]), rule.odd_surprise(values[c], rounding), pole});
         marks.exhausted = marks.exhausted && error <= rounding;
         fresh.value(r)[c] = volume * mean;
         fresh.error(r)[c] = volume * std::max(error, rounding);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "montelux/mc/math/error.h"
 
@@ -127,6 +128,7 @@ SymmetricRule::SymmetricRule(int dimensions, int degree, std::vector<Generator> 
         before_at_ = generators[probe > 0 ? last : before][0];
     }
     solve(generators);
+    if (dimensions == 1) solve_odd(generators);
 }
 
 // All arrangements and signs. Points on an axis come as +e_1, -e_1, +e_2, ...
@@ -217,6 +219,31 @@ void SymmetricRule::solve(const std::vector<Generator>& generators) {
     }
 }
 
+// As for the even part: the equations of degree 1, 3, 5 ... made orthonormal one after another.
+void SymmetricRule::solve_odd(const std::vector<Generator>& generators) {
+    const std::size_t pairs = generators.size() - 1; // the first is the centre
+    const int highest = 2 * static_cast<int>(pairs) - 1;
+    std::vector<std::vector<long double>> basis;
+    for (int d = 1; d <= highest; d += 2) {
+        std::vector<long double> row;
+        for (std::size_t j = 0; j < pairs; ++j)
+            row.push_back(legendre(highest, generators[j + 1][0])[static_cast<std::size_t>(d)]);
+        for (int pass = 0; pass < 2; ++pass)
+            for (const auto& other : basis) {
+                const long double along = std::inner_product(row.begin(), row.end(), other.begin(), 0.0L);
+                for (std::size_t j = 0; j < pairs; ++j) row[j] -= along * other[j];
+            }
+        const long double norm = std::sqrt(std::inner_product(row.begin(), row.end(), row.begin(), 0.0L));
+        for (long double& x : row) x /= norm;
+        basis.push_back(std::move(row));
+    }
+    long double squares = weights_[0] * weights_[0];
+    for (std::size_t j = 0; j < pairs; ++j) squares += 2 * weights_[j + 1] * weights_[j + 1];
+    for (std::size_t b = basis.size(); b-- > 1;)
+        for (long double x : basis[b])
+            odd_null_weights_.push_back(static_cast<double>(std::sqrt(squares / 2) * x));
+}
+
 double SymmetricRule::apply(std::span<const double> values, std::span<double> nulls) const {
     double mean = 0;
     std::fill(nulls.begin(), nulls.end(), 0.0);
@@ -244,16 +271,38 @@ SymmetricRule::Assessment SymmetricRule::assess(std::span<const double> nulls, d
         }
         size[groups - 1] += (nulls[k] / unit) * (nulls[k] / unit);
     }
-    Assessment result{0, 0};
     for (double& s : size) s = unit * std::sqrt(s);
-    for (std::size_t g = 0; g + 1 < groups; ++g)
-        if (size[g] > rounding)
-            result.ratio = std::max(result.ratio, size[g + 1] > 0 ? size[g] / size[g + 1]
-                                                                  : std::numeric_limits<double>::infinity());
-    result.error = *std::ranges::max_element(size);
+    return assess_sizes(std::span(size).first(groups), rounding);
+}
+
+SymmetricRule::Assessment SymmetricRule::assess_sizes(std::span<const double> sizes, double rounding) {
+    Assessment result{0, 0};
+    for (std::size_t g = 0; g + 1 < sizes.size(); ++g)
+        if (sizes[g] > rounding)
+            result.ratio = std::max(result.ratio, sizes[g + 1] > 0 ? sizes[g] / sizes[g + 1]
+                                                                   : std::numeric_limits<double>::infinity());
+    for (double size : sizes) result.error = std::max(result.error, size);
     constexpr double caution = 4;
-    if (result.ratio < 1) result.error = std::min(result.error, caution * result.ratio * size[0]);
+    if (result.ratio < 1) result.error = std::min(result.error, caution * result.ratio * sizes[0]);
     return result;
+}
+
+double SymmetricRule::odd_surprise(std::span<const double> values, double rounding) const {
+    const std::size_t pairs = orbits_.size() - 1;
+    std::array<double, 3> sizes{};
+    std::size_t count = 0;
+    for (; count < std::min(sizes.size(), odd_null_weights_.size() / pairs); ++count) {
+        double sum = 0;
+        for (std::size_t j = 0; j < pairs; ++j) {
+            const double* f = &values[orbits_[j + 1].first];
+            sum += odd_null_weights_[count * pairs + j] * (f[0] - f[1]);
+        }
+        sizes[count] = std::abs(sum);
+    }
+    const Assessment found = assess_sizes(std::span(sizes).first(count), rounding);
+    if (found.ratio >= 1) return found.error;
+    // The null rules' degrees are below 2 pairs; the factor once more for each two up to the rule's own.
+    return found.error * std::pow(found.ratio, (degree_ - 2 * static_cast<int>(pairs) - 1) / 2);
 }
 
 SymmetricRule::AxisTerms SymmetricRule::axis_terms(std::span<const double> values, std::size_t d) const {

@@ -54,6 +54,11 @@ class SymmetricRule {
     // the largest of them (Berntsen & Espelid 1991). Values below `rounding` are ignored.
     Assessment assess(std::span<const double> nulls, double rounding = 0) const;
 
+    // An error of the mean in one variable that no even rule sees, from null rules of the part that is odd in x: the
+    // largest of them, less where they fall from degree to degree, as if they fell on to the rule's degree. Jumps at -a
+    // and b look odd where no point lies between a and b. Zero in several variables.
+    double odd_surprise(std::span<const double> values, double rounding = 0) const;
+
     // How far the integrand is from a cubic along each axis: a tenth of the coefficient of x^4 of the quartic
     // through the centre and two orbits on the axis, and the probes' difference from that quartic, so that a
     // zero of either does not hide an axis. Adds scale times these to `sums`, one per axis. Needs two orbits
@@ -87,6 +92,9 @@ class SymmetricRule {
     AxisTerms axis_terms(std::span<const double> values, std::size_t axis) const;
     static PointBuffer orbit(int dimensions, const Generator& generator);
     void solve(const std::vector<Generator>& generators);
+    void solve_odd(const std::vector<Generator>& generators);
+    // From the sizes of null rules of the highest degrees, highest first.
+    static Assessment assess_sizes(std::span<const double> sizes, double rounding);
 
     int dimensions_, degree_;
     PointBuffer points_;
@@ -94,6 +102,7 @@ class SymmetricRule {
     std::vector<double> weights_;      // of a point of each orbit; sum over all points is 1
     std::vector<double> null_weights_; // null rule after null rule, as `weights_`
     std::vector<int> null_degrees_;
+    std::vector<double> odd_null_weights_; // of differences over each orbit of two points; one variable
     // The two innermost orbits on the axes, and their distances from the centre.
     std::size_t inner_ = 0, outer_ = 0;
     double inner_at_ = 0, outer_at_ = 0;

@@ -151,5 +151,23 @@ TEST(SymmetricRule, GeneratorsThatCannotReachTheDegreeAreRefused) {
     EXPECT_THROW(SymmetricRule(2, 7, {{}, {0.5}, {0.9}}), Error);
 }
 
+// Jumps at -0.7 and 0.8, between the same two points of a rule on either side.
+TEST(SymmetricRule, OddPartTellsOfJumps) {
+    const SymmetricRule rule = fine_rule_of_one_dimension();
+    auto values = [&](auto f) {
+        std::vector<double> all;
+        for (double x : rule.offsets().view().coordinate(0)) all.push_back(f(x));
+        return all;
+    };
+    std::vector<double> nulls(static_cast<std::size_t>(rule.null_rules()));
+    const auto jumps = values([](double x) { return x + (x < -0.7) - (x > 0.8); }); // of mean 0.05
+    EXPECT_NEAR(rule.apply(jumps, nulls), 0, 1e-14);
+    EXPECT_LT(rule.assess(nulls).error, 1e-14);
+    EXPECT_GT(rule.odd_surprise(jumps), 0.05);
+    EXPECT_LT(rule.odd_surprise(values([](double x) { return std::sin(2 * x); })), 1e-11);
+    EXPECT_LT(rule.odd_surprise(values([](double x) { return 1 / (2 + x); })), 1e-7);
+    EXPECT_EQ(rule.odd_surprise(values([](double x) { return x * x; })), 0);
+}
+
 } // namespace
 } // namespace montelux
