@@ -22,7 +22,8 @@ namespace {
 using Point = std::vector<double>;
 
 constexpr double least_resolved = 16; // exponent of the finest shell that tells of divergence inside
-constexpr double suspicious = 0.2;    // of the inner shells' masses beside the outer ones'
+constexpr double suspicious = 0.2;    // of the inner shells' masses beside the outer ones',
+constexpr double constant = 0.9;      // or of the innermost one beside the one before
 constexpr double matters = 1e-3;      // of the greatest mass of a shell: a difference between two
 constexpr double outstanding = 16;    // times the median of the look
 constexpr std::size_t most_peaks = 3, more_corners = 8;
@@ -202,8 +203,9 @@ class Look {
             return std::isnan(g) ? 0
                                  : g * std::exp2(-path.codimension() * ladder[i] * finest / ladder.back());
         };
-        const double inner = std::max(mass(4), mass(5));
-        return inner > 0 && (std::isinf(inner) || inner >= suspicious * mass(3));
+        const double inner = std::max(mass(4), mass(5)), outer = std::max(mass(2), mass(3));
+        return inner > 0 &&
+               (std::isinf(inner) || inner >= suspicious * outer || mass(5) >= constant * mass(4));
     }
 
     // Whether all shells like the innermost ones hold less than the rounding of what was seen elsewhere.
