@@ -259,6 +259,7 @@ std::vector<std::vector<double>> formula_landmarks(const std::vector<std::string
         if (finite && !origin && std::ranges::find(points, x) == points.end()) points.push_back(std::move(x));
     };
     std::vector<Reader> readers;
+    readers.reserve(texts.size());
     for (const std::string& text : texts) readers.emplace_back(tokens_of(text, variables, value_of));
     std::vector<LinearForm> all;
     for (const Reader& reader : readers) {

@@ -258,7 +258,10 @@ class AutoEstimator final : public Estimator {
             // A cubature with a warning is replaced by sampling.
             tally.ready = tally.ready && tally.warnings.empty() && (agreed_ || !tally.localised);
             tally.localised = tally.localised && !agreed_;
-            if (agreed_) tally.notes.insert(tally.notes.end(), sampled.notes.begin(), sampled.notes.end());
+            if (agreed_) {
+                tally.notes.insert(tally.notes.end(), sampled.notes.begin(), sampled.notes.end());
+                tally.warnings.insert(tally.warnings.end(), sampled.warnings.begin(), sampled.warnings.end());
+            }
             return tally;
         }
         Tally tally = sampling_->tally();

@@ -15,6 +15,7 @@
 #include "montelux/mc/integrate/cubature/cubature_totals.h"
 #include "montelux/mc/integrate/cubature/cubature_verification.h"
 #include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/integrate/witness/first_look.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {
@@ -162,9 +163,10 @@ class CubatureEstimator final : public Estimator {
         tally.ready = !searching() && verification_.verified(totals_.value()) && !confirmation_.pending() &&
                       (verification_.recalled(regions_.count()) || at_limit_);
         tally.at_limit = at_limit_;
-        // Halving alone finds a single feature of one variable.
-        tally.localised = (n_ > 1 || verification_.features() > 1) && verification_.evaluations() > 0 &&
-                          verification_.blind();
+        // Halving or the look finds a single feature of one variable; where chance found it, there may be more.
+        const bool chance = problem_.look && problem_.look->found_by_chance;
+        tally.localised = (n_ > 1 || chance || verification_.features() > 1) &&
+                          verification_.evaluations() > 0 && verification_.blind();
         tally.check_evaluations = verification_.evaluations();
         tally.singular = singular_;
         tally.non_finite.merge(verification_.non_finite());

@@ -98,6 +98,10 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
             const bool rounds = is_rounding(peak);
             const double narrow = rounds ? value * peak.volume : 0;
             if (!rounds) {
+                look_.found_by_chance =
+                    look_.found_by_chance || std::ranges::none_of(look_.peaks, [&](const Witness& other) {
+                        return belongs(raw, peak, other, magnitude);
+                    });
                 for (Witness& other : opposite_peaks(raw, peak, magnitude))
                     look_.peaks.push_back(std::move(other));
                 look_.peaks.push_back(std::move(peak));
@@ -195,6 +199,7 @@ void Evidence::save(StateWriter& state) const {
     save_all(state, look_.witnesses);
     save_all(state, look_.peaks);
     save_all(state, look_.slow);
+    state.put(look_.found_by_chance);
     state.put(look_.evaluations);
     state.put(look_.unresolved);
     for (const Examined& e : examined_) {
@@ -212,6 +217,7 @@ void Evidence::load(StateReader& state) {
     load_all(state, look_.witnesses);
     load_all(state, look_.peaks);
     load_all(state, look_.slow);
+    look_.found_by_chance = state.get<int>() != 0;
     look_.evaluations = state.get_word();
     look_.unresolved = state.get_doubles();
     for (Examined& e : examined_) {

@@ -377,34 +377,26 @@ class Look {
         std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
         const double median = sizes[sizes.size() / 2];
         std::vector<Witness> starts;
+        starts.reserve(from.size());
         for (std::size_t i : from) starts.push_back(look_.witnesses[i]);
         std::ranges::sort(starts, std::greater{}, [&](const Witness& w) { return size(w.value); });
         for (const Witness& start : starts) {
             if (look_.peaks.size() >= most_peaks || !affordable(40 * n_)) break;
             if (!(size(start.value) > outstanding * median)) break;
-            if (std::ranges::any_of(look_.peaks, [&](const Witness& p) { return belongs(start, p); }))
-                continue;
             const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
+            const auto is_known = [&](const Witness& w) {
+                return std::ranges::any_of(
+                    look_.peaks, [&](const Witness& peak) { return belongs(raw_, w, peak, magnitude); });
+            };
+            if (is_known(start)) continue;
             Witness top = climb(raw_, start, magnitude);
-            if (std::ranges::any_of(look_.peaks, [&](const Witness& p) { return belongs(top, p); })) continue;
+            if (is_known(top)) continue;
             measure(raw_, top, magnitude);
             if (is_rounding(top)) continue;
             std::vector<Witness> opposite = opposite_peaks(raw_, top, magnitude);
             look_.peaks.push_back(std::move(top));
             std::ranges::move(opposite, std::back_inserter(look_.peaks));
         }
-    }
-
-    // Does the value fall along the line from the top of a known peak? Otherwise it is another one.
-    bool belongs(const Witness& w, const Witness& top) {
-        std::vector<Point> between;
-        for (double t : {0.25, 0.5, 0.75}) {
-            Point u(n_);
-            for (std::size_t d = 0; d < n_; ++d) u[d] = w.u[d] + t * (top.u[d] - w.u[d]);
-            between.push_back(std::move(u));
-        }
-        const double least = 0.5 * std::min(size(w.value), size(top.value));
-        return std::ranges::all_of(raw_(between), [&](const auto& row) { return size(row) >= least; });
     }
 
     RawValues raw_;

@@ -138,6 +138,7 @@ std::vector<Anchor> LadderPaths::nearest_place(const std::vector<double>& x) con
         if (!improves(around)) ++exponent;
     }
     std::vector<Anchor> place;
+    place.reserve(best.size());
     for (double c : best) place.push_back({c, finest_inside});
     return place;
 }

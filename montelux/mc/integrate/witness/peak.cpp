@@ -71,6 +71,16 @@ bool is_rounding(const Witness& top) {
     return false;
 }
 
+bool belongs(RawValues& raw, const Witness& w, const Witness& top, const Magnitude& magnitude) {
+    std::vector<std::vector<double>> between;
+    for (double t : {0.25, 0.5, 0.75}) {
+        between.push_back(w.u);
+        for (std::size_t d = 0; d < w.u.size(); ++d) between.back()[d] += t * (top.u[d] - w.u[d]);
+    }
+    const double least = 0.5 * std::min(magnitude(w.value), magnitude(top.value));
+    return std::ranges::all_of(raw(between), [&](const auto& row) { return magnitude(row) >= least; });
+}
+
 std::vector<Witness> opposite_peaks(RawValues& raw, const Witness& peak, const Magnitude& magnitude) {
     constexpr double near = 8; // extents
     std::vector<Witness> found;

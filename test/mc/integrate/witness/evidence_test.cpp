@@ -212,6 +212,22 @@ TEST(Evidence, MissedPeaksBelowTheTargetAreInTheError) {
     EXPECT_GE(claims, 10);
 }
 
+// Where nearly all of the domain is zero, a peak that only chance found may have twins.
+TEST(Evidence, PeaksFoundByChanceAreNotAll) {
+    const auto twins = [](double x) { return std::exp(-1e7 * std::pow(x * x - 2, 2)); };
+    const double exact = std::sqrt(std::numbers::pi / 1e7 / 2);
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        const IntegrationResult r =
+            integrate(twins, Domain::interval(-10, 10), Method(), {.relative_error = 1e-2}, {.seed = seed});
+        EXPECT_TRUE(!r.converged() || std::abs(r.value[0] - exact) < 5 * r.standard_error[0]) << seed;
+    }
+    // One that the look finds is claimed.
+    const Integrand single([](double x) { return std::exp(-std::pow((x - 1) / 1e-4, 2)); });
+    EXPECT_TRUE(
+        integrate(single.with_landmarks({{1}}), Domain::interval(-10, 10), Method(), {.relative_error = 1e-2})
+            .converged());
+}
+
 TEST(Evidence, PolesCountOnce) {
     const Integrand f([](std::span<const double> x) {
         return std::pow((x[0] - 0.3) * (x[0] - 0.3) + (x[1] - 0.7) * (x[1] - 0.7), -0.9);
