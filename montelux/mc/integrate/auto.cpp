@@ -257,11 +257,8 @@ class AutoEstimator final : public Estimator {
                     "the error does not fall where values are not finite; the integral may not exist");
             // A cubature with a warning is replaced by sampling.
             tally.ready = tally.ready && tally.warnings.empty() && (agreed_ || !tally.localised);
-            tally.localised = tally.localised && !agreed_;
-            if (agreed_) {
-                tally.notes.insert(tally.notes.end(), sampled.notes.begin(), sampled.notes.end());
-                tally.warnings.insert(tally.warnings.end(), sampled.warnings.begin(), sampled.warnings.end());
-            }
+            tally.localised = tally.localised && (!agreed_ || sampled.sparse);
+            if (agreed_) tally.notes.insert(tally.notes.end(), sampled.notes.begin(), sampled.notes.end());
             return tally;
         }
         Tally tally = sampling_->tally();

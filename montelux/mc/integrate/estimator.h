@@ -90,6 +90,8 @@ struct Tally {
     bool at_limit = false;
     // The integral is concentrated in too small a part of the domain for random points to check the rule.
     bool localised = false;
+    // Hardly any random point saw anything but zero, and chance found the peaks: there may be others.
+    bool sparse = false;
     std::vector<std::string> warnings;
     std::vector<std::string> notes; // what is no warning, but good to know
     std::string method, reason;     // filled by estimators that choose among others

@@ -445,9 +445,11 @@ class AdaptiveEstimator final : public Estimator {
         else if (trainer_.nonzero() < enough_nonzero && phase_ == Phase::weighted && known_peaks_ > 0 &&
                  !problem_.look->found_by_chance)
             tally.notes.push_back(outside_of_peaks());
-        else if (trainer_.nonzero() < enough_nonzero)
+        else if (trainer_.nonzero() < enough_nonzero) {
+            tally.sparse = true;
             warn("only " + std::to_string(trainer_.nonzero()) +
                  " of the exploring points saw anything but zero; other places may have been missed");
+        }
         if (phase_ == Phase::weighted && problem_.evaluator.dimensions() > 1 && trainer_.peaks() > 0 &&
             trainer_.effective_share() < narrow_peaks)
             tally.notes.push_back(other_peaks());

@@ -87,7 +87,8 @@ class Look {
         }
         const auto rows = raw_(points);
         for (std::size_t i = 0; i < points.size(); ++i)
-            if (keep(points[i], rows[i], volumes[i], true) && is_inside(paths[i / ladder.size()]) &&
+            if (keep(points[i], rows[i], volumes[i], i % ladder.size() == 0) &&
+                is_inside(paths[i / ladder.size()]) &&
                 size(rows[i]) > outstanding * size(rows[i - i % ladder.size()]))
                 deep_.push_back(look_.witnesses.size() - 1);
         refine(paths, walked, rows, volumes);
@@ -346,7 +347,7 @@ class Look {
         return domain.ranges().empty() ? place + " (variables of the unit cube)" : place;
     }
 
-    // `ordinary`: a point of a ladder as it is, which tells what sizes values usually have. False for values that are not
+    // `ordinary`: the outermost point of a ladder, which tells what sizes values usually have. False for values that are not
     // finite.
     bool keep(const Point& u, const std::vector<double>& row, double volume, bool ordinary) {
         for (std::size_t c = 0; c < row.size(); ++c)
