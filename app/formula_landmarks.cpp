@@ -278,7 +278,8 @@ std::vector<std::vector<double>> formula_landmarks(const std::vector<std::string
     add_roots(all, add_point);
     for (const LinearForm& form : all) add_roots({form}, add_point);
     for (const LinearForm& form : all)
-        if (form.constant == 0) add_point(form.factor);
+        if (form.constant == 0 && std::ranges::count(form.factor, 0.0) + 1 < std::ssize(form.factor))
+            add_point(form.factor);
     for (const Reader& reader : readers)
         reader.add_numbers([&](double value) {
             for (double v : {value, -value}) add_point(std::vector<double>(variables.size(), v));

@@ -14,9 +14,9 @@ std::size_t name_length(std::string_view text);
 
 // Common roots of linear forms, such as 2*x-1, x+y<0.5 or 3+y, come first: of those of one bracket, as in
 // (x-1)^2+(y-2)^2, as many as there can be; then of those that are left there; of all forms; and of each alone, closest to
-// the origin. Forms without a constant give their gradient, the direction in which they are greatest. Each number
-// follows, with either sign in all variables: as written, by name, as a product or quotient such as pi/4; exponents are
-// left out. Each point stands once, without the origin.
+// the origin. Forms of several variables without a constant give their gradient, the direction in which they are greatest.
+// Each number follows, with either sign in all variables: as written, by name, as a product or quotient such as pi/4;
+// exponents are left out. Each point stands once, without the origin.
 // `value_of`: of a formula without variables, such as pi or sqrt(2); NaN where it has none.
 std::vector<std::vector<double>> formula_landmarks(const std::vector<std::string>& texts,
                                                    const std::vector<std::string>& variables,
