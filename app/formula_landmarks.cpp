@@ -13,6 +13,7 @@ namespace montelux::app {
 namespace {
 
 constexpr std::size_t most_roots = 8;        // of the forms of one bracket
+constexpr std::size_t most_forms = 128;      // of a formula: a look takes few points, roots cost their square
 constexpr std::size_t most_of_operand = 256; // characters
 
 struct Token {
@@ -72,7 +73,7 @@ std::vector<Token> tokens_of(std::string_view text, const std::vector<std::strin
     return tokens;
 }
 
-// factor x + constant.
+// Form factor x + constant.
 struct LinearForm {
     std::vector<double> factor;
     double constant = 0;
@@ -84,7 +85,7 @@ class CommonRoot {
   public:
     explicit CommonRoot(std::size_t variables) : point_(variables, 0.0) {}
 
-    // False, without effect, where the form depends on earlier ones (by Gram and Schmidt's orthogonalisation).
+    // Returns false, without effect, where the form depends on earlier ones (by Gram and Schmidt's orthogonalisation).
     bool add(const LinearForm& form) {
         constexpr double dependent = 1e-9;
         std::vector<double> row(form.factor);
@@ -140,7 +141,7 @@ class Reader {
     // Linear forms: sums of numbers and multiples of variables, and differences of two that are compared.
     void add_forms(std::size_t variables, std::vector<LinearForm>& forms) const {
         std::vector<std::size_t> open; // brackets
-        for (std::size_t i = 0; i < tokens_.size();) {
+        for (std::size_t i = 0; i < tokens_.size() && forms.size() < most_forms;) {
             const std::size_t begin = i;
             LinearForm form{std::vector<double>(variables, 0.0)};
             if ((i == 0 || begins_term(i - 1) || is_sign(i)) && add_sum(i, 1, form)) {

@@ -443,7 +443,7 @@ class AdaptiveEstimator final : public Estimator {
         if (trainer_.nonzero() == 0 && tally.value[0] == 0)
             warn("the integrand was zero at every point; a narrow peak may have been missed");
         else if (trainer_.nonzero() < enough_nonzero && phase_ == Phase::weighted && known_peaks_ > 0 &&
-                 !problem_.look->found_by_chance)
+                 !(problem_.look && problem_.look->found_by_chance))
             tally.notes.push_back(outside_of_peaks());
         else if (trainer_.nonzero() < enough_nonzero) {
             tally.sparse = true;

@@ -28,7 +28,7 @@ class DensityTrainer {
     double effective_share() const { return effective_share_; }
     // Are values of one size wherever they are not zero, as those of indicators?
     bool flat_where_nonzero() const { return flat_size_ > 0; }
-    // Are these values of that size?
+    // Whether these values are of that size, to within a factor of 2.
     bool is_of_flat_size(const std::vector<double>& values) const;
 
     // Searches for peaks until this many searches in a row lead to known ones; evaluations() counts the cost.

@@ -219,7 +219,8 @@ void SymmetricRule::solve(const std::vector<Generator>& generators) {
     }
 }
 
-// As for the even part: the equations of degree 1, 3, 5 ... made orthonormal one after another.
+// Equations of degree 1, 3, 5 ... made orthonormal one after another give the null rules of the odd part, as those of the
+// even part above.
 void SymmetricRule::solve_odd(const std::vector<Generator>& generators) {
     const std::size_t pairs = generators.size() - 1; // the first is the centre
     const int highest = 2 * static_cast<int>(pairs) - 1;
@@ -288,6 +289,7 @@ SymmetricRule::Assessment SymmetricRule::assess_sizes(std::span<const double> si
 }
 
 double SymmetricRule::odd_surprise(std::span<const double> values, double rounding) const {
+    if (odd_null_weights_.empty()) return 0;
     const std::size_t pairs = orbits_.size() - 1;
     std::array<double, 3> sizes{};
     std::size_t count = 0;

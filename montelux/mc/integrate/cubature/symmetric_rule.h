@@ -93,7 +93,7 @@ class SymmetricRule {
     static PointBuffer orbit(int dimensions, const Generator& generator);
     void solve(const std::vector<Generator>& generators);
     void solve_odd(const std::vector<Generator>& generators);
-    // From the sizes of null rules of the highest degrees, highest first.
+    // Assessment by the sizes of null rules of the highest degrees, highest first; at least one.
     static Assessment assess_sizes(std::span<const double> sizes, double rounding);
 
     int dimensions_, degree_;

@@ -406,8 +406,8 @@ class Look {
     LadderPaths paths_;
     std::vector<double> largest_;       // |g| of each component
     std::vector<std::size_t> ordinary_; // witnesses
-    std::vector<std::size_t>
-        deep_; // witnesses close to a place inside, far above the beginning of their ladder
+    // Witnesses close to a place inside, far above the beginning of their ladder.
+    std::vector<std::size_t> deep_;
     FirstLook look_;
 };
 

@@ -25,7 +25,7 @@ struct FirstLook {
     std::vector<SlowShells> slow;
     // Where the mass of |g| in dyadic shells does not fall, as "x -> 0"; empty where it falls everywhere.
     std::string divergence;
-    bool found_by_chance = false; // peaks, by random points since
+    bool found_by_chance = false; // whether random points have found other peaks since
     std::uint64_t evaluations = 0;
     double seconds = 0; // wall time of the evaluations
 };

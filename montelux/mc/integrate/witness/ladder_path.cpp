@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "montelux/mc/integrate/points.h"
+#include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/integrate/witness/shells.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
@@ -16,6 +17,7 @@ namespace montelux {
 namespace {
 
 constexpr std::size_t most_anchors = 16; // of a variable
+constexpr std::size_t most_searched = 8; // variables of a map whose nearest points are searched for
 constexpr double same_place = 0x1p-50;
 
 bool are_near(const Anchor& a, const Anchor& b) { return std::abs(a.u - b.u) < same_place; }
@@ -67,6 +69,7 @@ LadderPaths::LadderPaths(const Domain& domain, std::size_t dimensions,
             throw Error("integrate", "a landmark has " + std::to_string(x.size()) +
                                          " coordinates; expected " + std::to_string(n) +
                                          ", one per variable");
+    if (ranges.empty() && n_ > most_searched) return;
     if (!ranges.empty()) add_place(place_in_ranges(std::vector<double>(n_, 0.0)));
     for (std::size_t i = 0; i < landmarks.size() && places_.size() < most_anchors; ++i)
         add_place(ranges.empty() ? nearest_place(landmarks[i]) : place_in_ranges(landmarks[i]));
@@ -103,7 +106,7 @@ std::vector<Anchor> LadderPaths::nearest_place(const std::vector<double>& x) con
     const int n = static_cast<int>(n_);
     std::vector<double> best(n_, 0.5);
     double least = std::numeric_limits<double>::infinity();
-    // The nearest of these points of the cube, if nearer than the best one.
+    // Takes the nearest of these points of the cube, if nearer than the best one.
     const auto improves = [&](const PointBuffer& u) {
         PointBuffer at(u.count(), domain_.dimensions());
         std::vector<double> volumes(u.count(), 1.0);
@@ -120,9 +123,7 @@ std::vector<Anchor> LadderPaths::nearest_place(const std::vector<double>& x) con
         return least < before;
     };
     PointBuffer u(scattered, n);
-    for (std::size_t i = 0; i < scattered; ++i)
-        for (int d = 0; d < n; ++d)
-            u(i, d) = static_cast<double>(hash_key(i, static_cast<std::uint64_t>(d)) >> 11) * 0x1p-53;
+    fill_random(u, seed_, 0, 0);
     improves(u);
     // Compass search (Kolda, Lewis and Torczon 2003, "Optimization by direct search").
     PointBuffer around(2 * n_, n);

@@ -38,7 +38,7 @@ struct LadderPath {
 class LadderPaths {
   public:
     // `landmarks`: points near which features may lie. Of a box, a coordinate outside of its range stands for the range's
-    // centre; of another domain, a point stands for the nearest one.
+    // centre; of another domain of up to eight variables, a point stands for the nearest one.
     LadderPaths(const Domain& domain, std::size_t dimensions, std::span<const std::vector<double>> landmarks,
                 std::uint64_t seed);
 
@@ -60,10 +60,11 @@ class LadderPaths {
   private:
     double random();
     Anchor anchor(std::size_t d, double x) const;
-    // Empty where no coordinate is inside.
+    // Place of a point of a box; empty where no coordinate is inside.
     std::vector<Anchor> place_in_ranges(const std::vector<double>& x) const;
+    // Place whose point of the domain is nearest.
     std::vector<Anchor> nearest_place(const std::vector<double>& x) const;
-    // Unless it is one already, or empty.
+    // Adds a place, unless it is one already, or empty.
     void add_place(std::vector<Anchor> place);
     LadderPath to_corner(const std::vector<double>& place, std::vector<int> rates = {}) const;
 

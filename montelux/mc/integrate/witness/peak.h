@@ -24,7 +24,7 @@ void measure(RawValues& raw, Witness& top, const Magnitude& magnitude, int finer
 // Tells a value that only a few neighbouring numbers have, as where a pole's distance is rounded to zero, from a peak.
 bool is_rounding(const Witness& top);
 
-// Does the magnitude stay up along the line from a point to the top of a peak? Otherwise the point is on another one.
+// Whether a point belongs to a peak: the magnitude stays up along the line from it to the top.
 bool belongs(RawValues& raw, const Witness& w, const Witness& top, const Magnitude& magnitude);
 
 // Peaks of like height at the other end of a variable close to whose one end a peak lies, measured: the ends of an angle

@@ -16,7 +16,7 @@ namespace montelux {
 inline constexpr double finest_inside = 46, finest_at_origin = 400;
 // Factor of all distances of looks: integrands have features at powers of two.
 inline constexpr double off_grid = 0.9;
-// From u to the end of the cube on a side.
+// Distance from u to the end of the cube on a side.
 inline double reach(double u, double side) { return side > 0 ? 1 - u : u; }
 // Exponent of the smallest distance around coordinate d = u of the unit cube that is far above the spacing of doubles, in
 // u and in x.

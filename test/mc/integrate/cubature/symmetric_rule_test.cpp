@@ -167,6 +167,8 @@ TEST(SymmetricRule, OddPartTellsOfJumps) {
     EXPECT_LT(rule.odd_surprise(values([](double x) { return std::sin(2 * x); })), 1e-11);
     EXPECT_LT(rule.odd_surprise(values([](double x) { return 1 / (2 + x); })), 1e-7);
     EXPECT_EQ(rule.odd_surprise(values([](double x) { return x * x; })), 0);
+    EXPECT_EQ(two_dimensional_rule().odd_surprise(std::vector<double>(two_dimensional_rule().points(), 1.0)),
+              0);
 }
 
 } // namespace

@@ -178,7 +178,7 @@ TEST(Evidence, HalfOfAWideIntegralIsNotClaimed) {
 }
 
 // A narrow mode that the look has seen: uniform points, which miss it, would agree with one another.
-// 1, and a peak of mass pi height / 1e6 of which uniform points tell nothing.
+// Sum of 1 and a peak of mass pi height / 1e6 of which uniform points tell nothing.
 Integrand plain_and_peak(double height) {
     return Integrand([=](std::span<const double> x) {
                return 1 + height * std::exp(-1e6 * (std::pow(x[0] - 0.3, 2) + std::pow(x[1] - 0.7, 2)));
@@ -212,7 +212,7 @@ TEST(Evidence, MissedPeaksBelowTheTargetAreInTheError) {
     EXPECT_GE(claims, 10);
 }
 
-// Where nearly all of the domain is zero, a peak that only chance found may have twins.
+// A peak that only chance found may have twins where nearly all of the domain is zero.
 TEST(Evidence, PeaksFoundByChanceAreNotAll) {
     const auto twins = [](double x) { return std::exp(-1e7 * std::pow(x * x - 2, 2)); };
     const double exact = std::sqrt(std::numbers::pi / 1e7 / 2);

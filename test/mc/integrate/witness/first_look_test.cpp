@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -116,6 +117,24 @@ TEST(FirstLook, FindsPeaksAtLandmarksOfShapes) {
                       {{0, 0, 1}})
                   .divergence,
               "x -> (0, 0, 1)");
+}
+
+// The search for the nearest point costs no more where a map has many variables.
+TEST(FirstLook, LandmarksOfMapsOfManyVariablesCostNothing) {
+    std::size_t mapped = 0;
+    const auto domain = [&](int n) {
+        return Domain::mapped(n, n, [&](std::span<const double> u, std::span<double> x) {
+            std::ranges::copy(u, x.begin());
+            ++mapped;
+            return 1.0;
+        });
+    };
+    const auto one = [](std::span<const double>) { return 1.0; };
+    look_at(one, domain(2), {{0.3, 0.4}});
+    EXPECT_GT(mapped, 300u);
+    mapped = 0;
+    const FirstLook look = look_at(one, domain(100), {std::vector<double>(100, 0.3)});
+    EXPECT_LE(mapped, look.evaluations);
 }
 
 // A pole that holds little of the integral diverges all the same; a lobe that only rises from nothing does not.
