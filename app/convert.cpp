@@ -18,6 +18,7 @@
 #include "montelux/formats/load_scene.h"
 #include "montelux/formats/pbrt/write_pbrt.h"
 #include "montelux/formats/studio.h"
+#include "montelux/image/half.h"
 #include "montelux/image/image_read.h"
 
 namespace montelux::app {

@@ -1,7 +1,7 @@
 // Signals that ask the program to end: SIGINT, SIGTERM, and SIGHUP unless it is ignored (nohup).
 #pragma once
 
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux::app {
 

@@ -6,6 +6,8 @@
 #include <cstdio>
 #include <utility>
 
+#include "montelux/mc/parallel/parallel_for.h"
+
 namespace montelux::app {
 
 void declare(CLI::App& command, BakeRunOptions& options) {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace CLI {
 class App;

@@ -18,6 +18,7 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 
 #include "montelux/mc/integrate/trained/trained_density.h"
 #include "montelux/mc/io/generation_file.h"

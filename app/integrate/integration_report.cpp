@@ -1,6 +1,7 @@
 #include "app/integrate/integration_report.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "montelux/mc/device/device_function.h"
 

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "app/integrate/integrate_options.h"
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "montelux/mc/integrate/integrate_log.h"

@@ -15,6 +15,7 @@
 #include "montelux/cluster/serve.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/renderer.h"
 #include "montelux/scene/scene_digest.h"
 

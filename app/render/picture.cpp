@@ -23,6 +23,7 @@
 #include <utility>
 
 #include "montelux/denoise/oidn_api.h"
+#include "montelux/image/half.h"
 #include "montelux/image/image_write.h"
 #include "montelux/image/visible_error.h"
 #include "montelux/render/render_session.h"

@@ -9,6 +9,7 @@
 #include <cstdio>
 
 #include "montelux/mc/integrate/chains/sample_chains.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/estimate.h"
 
 namespace montelux::app {

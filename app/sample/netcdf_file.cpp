@@ -10,6 +10,7 @@
 
 #include "montelux/mc/io/file.h"
 #include "montelux/mc/io/shared_library.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux::app {
 namespace {

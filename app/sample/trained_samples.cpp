@@ -14,6 +14,7 @@
 #include "montelux/mc/integrate/trained/observables.h"
 #include "montelux/mc/integrate/trained/samples.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux::app {
 namespace {

@@ -17,6 +17,7 @@
 #include <unistd.h>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
 
 namespace montelux::bench {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux::bench {
 

@@ -4,6 +4,7 @@
 
 #include "montelux/bake/brdf_integrals.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {

@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "montelux/image/image.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

@@ -9,6 +9,7 @@
 #include "montelux/bake/lobe_estimate.h"
 #include "montelux/bake/radial_kernel.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
 
 namespace montelux {

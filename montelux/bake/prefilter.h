@@ -10,7 +10,7 @@
 #include "montelux/bake/cube_frame.h"
 #include "montelux/bake/environment_map.h"
 #include "montelux/image/cube_map.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

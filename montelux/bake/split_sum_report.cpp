@@ -11,6 +11,7 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/frame.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/random/philox_stream.h"
 #include "montelux/mc/stats/moments.h"

@@ -8,7 +8,7 @@
 #include "montelux/bake/cube_frame.h"
 #include "montelux/bake/environment_map.h"
 #include "montelux/image/image.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

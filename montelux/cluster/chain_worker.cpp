@@ -8,6 +8,7 @@
 
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {

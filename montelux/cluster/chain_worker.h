@@ -13,7 +13,7 @@
 #include "montelux/cluster/mailbox.h"
 #include "montelux/cluster/protocol.h"
 #include "montelux/cluster/rank_worker.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/metropolis/chain_renderer.h"
 
 namespace montelux {

@@ -9,6 +9,7 @@
 #include "montelux/cluster/tile_worker.h"
 #include "montelux/mc/io/byte_stream.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "montelux/cluster/mailbox.h"
 #include "montelux/mc/math/error.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/renderer.h"
 
 namespace montelux {

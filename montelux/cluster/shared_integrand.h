@@ -14,7 +14,7 @@
 
 #include "montelux/cluster/mailbox.h"
 #include "montelux/mc/integrate/points.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

@@ -17,7 +17,7 @@
 #include "montelux/cluster/protocol.h"
 #include "montelux/cluster/rank_worker.h"
 #include "montelux/film/splat_film.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/merging_bias.h"
 #include "montelux/render/merging_passes.h"
 #include "montelux/render/sample_context.h"

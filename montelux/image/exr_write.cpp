@@ -19,6 +19,7 @@
 #include <vector>
 
 #include "montelux/image/encoders.h"
+#include "montelux/image/half.h"
 #include "montelux/image/placement.h"
 #include "montelux/mc/math/error.h"
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "montelux/image/half.h"
 #include "montelux/image/texel_file.h"
 #include "montelux/mc/math/error.h"
 
@@ -71,6 +72,27 @@ std::optional<int> Image::find_channel(std::string_view name) const {
     auto it = std::find(names_.begin(), names_.end(), name);
     if (it == names_.end()) return std::nullopt;
     return static_cast<int>(it - names_.begin());
+}
+
+float Image::value_at(std::size_t i) const {
+    switch (format_) {
+    case PixelFormat::u8:
+        return static_cast<float>(u8_[i]) / 255;
+    case PixelFormat::u16:
+        return static_cast<float>(u16_[i]) / 65535;
+    case PixelFormat::f16:
+        return half_to_float(u16_[i]);
+    case PixelFormat::f32:
+        break;
+    }
+    return f32_[i];
+}
+
+float Image::linear(int x, int y, int channel) const {
+    const float v = value(x, y, channel);
+    return encoding_.kind() == ColorEncoding::Kind::linear || is_alpha(names_[channel])
+               ? v
+               : encoding_.to_linear(v);
 }
 
 std::vector<int> Image::color_channels(std::string_view layer) const {

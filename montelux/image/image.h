@@ -12,7 +12,6 @@
 #include <vector>
 
 #include "montelux/image/color_encoding.h"
-#include "montelux/image/half.h"
 #include "montelux/image/sample_array.h"
 #include "montelux/mc/math/transform.h"
 
@@ -70,26 +69,9 @@ class Image {
     }
     // The stored number as a float: integers divided by their maximum, encoding not undone.
     float value(int x, int y, int channel) const { return value_at(index(x, y, channel)); }
-    float value_at(std::size_t i) const {
-        switch (format_) {
-        case PixelFormat::u8:
-            return static_cast<float>(u8_[i]) / 255;
-        case PixelFormat::u16:
-            return static_cast<float>(u16_[i]) / 65535;
-        case PixelFormat::f16:
-            return half_to_float(u16_[i]);
-        case PixelFormat::f32:
-            break;
-        }
-        return f32_[i];
-    }
+    float value_at(std::size_t i) const;
     // Linear light: value() with the encoding undone.
-    float linear(int x, int y, int channel) const {
-        float v = value(x, y, channel);
-        return encoding_.kind() == ColorEncoding::Kind::linear || is_alpha(names_[channel])
-                   ? v
-                   : encoding_.to_linear(v);
-    }
+    float linear(int x, int y, int channel) const;
     // Only for f32 images.
     void set(int x, int y, int channel, float v) { f32_.writable()[index(x, y, channel)] = v; }
 

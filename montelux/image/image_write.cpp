@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "montelux/image/encoders.h"
+#include "montelux/image/half.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "montelux/mc/parallel/cpu_time.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/render/round_executor.h"
 #include "montelux/render/tile_renderer.h"

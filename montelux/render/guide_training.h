@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/guide_summary.h"
 #include "montelux/render/sample_context.h"
 

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/stats/jackknife.h"
 #include "montelux/render/check_render.h"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/prepared_scene.h"
 #include "montelux/render/render_state.h"
 #include "montelux/render/render_target.h"

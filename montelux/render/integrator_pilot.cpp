@@ -3,6 +3,7 @@
 #include <mutex>
 #include <utility>
 
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/metropolis/chain_renderer.h"
 #include "montelux/render/tile_renderer.h"
 

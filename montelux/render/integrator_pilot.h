@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/pilot_variance.h"
 #include "montelux/render/renderer.h"
 

@@ -8,6 +8,7 @@
 
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/parallel/cpu_time.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/splat_pass.h"
 
 namespace montelux {

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "montelux/accel/accelerator.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/render_state.h"
 #include "montelux/render/sample_context.h"
 

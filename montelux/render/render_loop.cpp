@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/guide_training.h"
 #include "montelux/render/live_film.h"
 #include "montelux/render/merging_passes.h"

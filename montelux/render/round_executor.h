@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "montelux/film/film_error.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/render_state.h"
 
 namespace montelux {

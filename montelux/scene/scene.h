@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "montelux/image/image.h"
+#include "montelux/scene/bsdf/measured_brdf.h"
 #include "montelux/scene/camera/camera_settings.h"
 #include "montelux/scene/light/light.h"
 #include "montelux/scene/light/sky/sky_model.h"

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <utility>
 
-#include "montelux/scene/bsdf/microfacet_normals.h"
+#include "montelux/scene/bsdf/microfacet_distribution.h"
 #include "montelux/scene/render_settings.h"
 
 namespace montelux {

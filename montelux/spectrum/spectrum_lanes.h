@@ -1,10 +1,8 @@
 // Spectra and wavelengths of many paths at a time.
 #pragma once
 
-#include <type_traits>
-
 #include "montelux/mc/math/lanes.h"
-#include "montelux/spectrum/wavelengths.h"
+#include "montelux/spectrum/spectrum_of.h"
 
 namespace montelux {
 
@@ -71,15 +69,8 @@ SpectrumLanes<W> clamp(const SpectrumLanes<W>& s, float low, float high) {
     return {one(s.v[0]), one(s.v[1]), one(s.v[2]), one(s.v[3])};
 }
 
-template <typename T>
-struct SpectrumTraits {
-    using Spectrum = SampledSpectrum;
-};
 template <int W>
 struct SpectrumTraits<Lanes<W>> {
     using Spectrum = SpectrumLanes<W>;
 };
-template <Number T>
-using SpectrumOf = typename SpectrumTraits<T>::Spectrum;
-
 } // namespace montelux

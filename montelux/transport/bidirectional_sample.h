@@ -195,7 +195,7 @@ class BidirectionalSample : private BidirectionalMerging<Stream> {
             if (k > 1 && !all_strategies_) break;
             if (!make_scattering(v, end)) return;
             if (k == 1 && v.phase == nullptr)
-                first_ = {.albedo = std::visit([&](const auto& b) { return b.albedo(v.wo); }, v.surface.bsdf),
+                first_ = {.albedo = albedo(v.surface.bsdf, v.wo),
                           .normal = v.surface.frame.n,
                           .depth = distance,
                           .found = true};

@@ -5,6 +5,7 @@
 #include <limits>
 #include <variant>
 
+#include "montelux/mc/math/lane_functions.h"
 #include "montelux/mc/math/vec_lanes.h"
 #include "montelux/mc/random/lane_stream.h"
 #include "montelux/scene/bsdf/diffuse.h"
@@ -12,6 +13,7 @@
 #include "montelux/scene/material/parameter_evaluator.h"
 #include "montelux/scene/shape/shading_terminator.h"
 #include "montelux/scene/shape/surface_point.h"
+#include "montelux/spectrum/spectrum_lanes.h"
 #include "montelux/transport/path_integrator.h"
 
 namespace montelux {

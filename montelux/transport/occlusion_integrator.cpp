@@ -79,7 +79,7 @@ FilmContribution OcclusionIntegrator::estimate(const SceneView& scene, RayTracer
     const SurfaceBsdf surface = make_bsdf(scene, s, wo, context, lambda);
     const Vec3f local = surface.frame.to_local(wo);
     if (recorder) recorder.made_bsdf(surface, local);
-    result.first = {.albedo = std::visit([&](const auto& b) { return b.albedo(local); }, surface.bsdf),
+    result.first = {.albedo = albedo(surface.bsdf, local),
                     .normal = surface.frame.n,
                     .depth = met->distance,
                     .found = true};

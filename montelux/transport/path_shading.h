@@ -6,7 +6,6 @@
 #include <limits>
 #include <vector>
 
-#include "montelux/scene/bsdf/narrow_lobes.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/material/soft_terminator.h"
 #include "montelux/scene/shape/surface_point.h"
@@ -192,10 +191,8 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
     const Vec3f wo = surface.frame.to_local(-w);
     if (recorder) recorder.made_bsdf(surface, wo);
     if (state.depth == 1)
-        state.first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, surface.bsdf),
-                       .normal = surface.frame.n,
-                       .depth = hit.t,
-                       .found = true};
+        state.first = {
+            .albedo = albedo(surface.bsdf, wo), .normal = surface.frame.n, .depth = hit.t, .found = true};
     if (wo.z == 0) {
         if (recorder) recorder.ended(PathEnd::grazing);
         return shadow;
@@ -203,10 +200,9 @@ std::optional<ShadowRay> PathIntegrator::shade(const SceneView& scene, PathState
 
     state.previous = reference_point(s, surface, wo);
     const Facing facing = facing_of(dot(s.ng, w) < 0 ? s.ng : -s.ng);
-    const bool guides = (guide_ != nullptr || state.trace != nullptr) &&
-                        !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
+    const bool guides = (guide_ != nullptr || state.trace != nullptr) && !is_specular(surface.bsdf);
     const GuidingRegion* const region = guides && guide_ != nullptr ? guide_->find(s.p, facing) : nullptr;
-    const bool glossy = guides && std::visit([](const auto& b) { return is_glossy(b); }, surface.bsdf);
+    const bool glossy = guides && is_glossy(surface.bsdf);
     const Vertex<Stream> vertex{*this, scene, state, stream, recorder, surface.frame, wo, region};
     if (guides && state.trace != nullptr) [[unlikely]]
         state.trace->begin(s.p, facing, glossy, state.throughput, state.radiance);

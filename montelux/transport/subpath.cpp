@@ -55,7 +55,7 @@ bool make_scattering(const SceneView& scene, const Camera& camera, float footpri
     if (!was_terminated && end.lambda.secondary_terminated()) end.terminate_secondary();
     v.lambda = end.lambda;
     v.wo = v.surface.frame.to_local(-v.w);
-    v.connectible = v.wo.z != 0 && !std::visit([](const auto& b) { return b.is_specular(); }, v.surface.bsdf);
+    v.connectible = v.wo.z != 0 && !is_specular(v.surface.bsdf);
     return v.wo.z != 0;
 }
 

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "montelux/mc/warp/sphere.h"
-#include "montelux/scene/bsdf/narrow_lobes.h"
 #include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/material/soft_terminator.h"
 #include "montelux/transport/guiding/guided_scattering.h"
@@ -265,7 +264,7 @@ class VolumePath : private VolumePathBranches<Stream> {
         const Vec3f wo = surface.frame.to_local(-w);
         if (recorder_) recorder_.made_bsdf(surface, wo);
         if (state_.depth == 1 && !in_body && !state_.first.found)
-            state_.first = {.albedo = std::visit([&](const auto& b) { return b.albedo(wo); }, surface.bsdf),
+            state_.first = {.albedo = albedo(surface.bsdf, wo),
                             .normal = surface.frame.n,
                             .depth = state_.distance,
                             .found = true};
@@ -276,10 +275,10 @@ class VolumePath : private VolumePathBranches<Stream> {
         state_.previous = reference_point(s, surface, wo);
         state_.scatter(); // before lights are sampled: no SegmentLight finds this vertex
         const Facing facing = facing_of(dot(s.ng, w) < 0 ? s.ng : -s.ng);
-        const bool guides = (guide_ != nullptr || state_.trace != nullptr) && !in_body && !last &&
-                            !std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf);
+        const bool guides =
+            (guide_ != nullptr || state_.trace != nullptr) && !in_body && !last && !is_specular(surface.bsdf);
         const GuidingRegion* const region = guides ? guide_at(s.p, facing) : nullptr;
-        const bool glossy = guides && std::visit([](const auto& b) { return is_glossy(b); }, surface.bsdf);
+        const bool glossy = guides && is_glossy(surface.bsdf);
         if (guides && !begin_guided(s.p, facing, glossy, region, [&] {
                 return glossy ? glossy_survival(surface.bsdf, wo, state_.depth) : this->survival_of(*region);
             }))

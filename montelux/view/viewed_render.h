@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 #include "montelux/render/render_session.h"
 #include "montelux/render/sample_record.h"
 #include "montelux/view/live_picture.h"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/chains/sample_chains.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux::python {
 namespace {

@@ -5,7 +5,7 @@
 #include <future>
 #include <nanobind/nanobind.h>
 
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux::python {
 

@@ -24,6 +24,7 @@
 #include "montelux/mc/integrate/trained/trained_method.h"
 #include "montelux/mc/integrate/vegas/vegas.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux::python {
 namespace {

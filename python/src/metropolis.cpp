@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/metropolis/metropolis_chain.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux::python {
 namespace {

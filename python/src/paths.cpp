@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/metropolis/chain_renderer.h"
 #include "montelux/render/strategy_pictures.h"
 

@@ -15,6 +15,7 @@
 #include "montelux/image/visible_error.h"
 #include "montelux/mc/io/generation_file.h"
 #include "montelux/mc/math/nearest_name.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/render_warnings.h"
 #include "montelux/scene/build/check_references.h"
 

@@ -2,6 +2,8 @@
 
 #include <utility>
 
+#include "montelux/mc/parallel/parallel_for.h"
+
 namespace montelux::python {
 
 RenderJob::RenderJob(std::shared_ptr<const SceneDescription> description, RenderSessionSettings settings,

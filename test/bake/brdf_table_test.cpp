@@ -8,6 +8,7 @@
 #include "montelux/bake/brdf_table.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {

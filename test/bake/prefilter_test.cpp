@@ -5,6 +5,7 @@
 #include "montelux/bake/prefilter.h"
 #include "montelux/bake/texel_estimate.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {

@@ -4,12 +4,6 @@
 namespace montelux::testing {
 namespace {
 
-struct ConstantValues {
-    SampledSpectrum reflectance(const SpectrumParameter& p) const {
-        return SampledSpectrum(p.value.constant);
-    }
-};
-
 TEST(DustMaterial, MakesTheBsdfOfItsParameter) {
     DustMaterial m;
     int parameters = 0;
@@ -18,7 +12,8 @@ TEST(DustMaterial, MakesTheBsdfOfItsParameter) {
         ++parameters;
     });
     EXPECT_EQ(parameters, 1);
-    EXPECT_EQ(m.bsdf(ConstantValues()).grains[0], 0.3f);
+    SampledWavelengths lambda = SampledWavelengths::sample_visible(0.3f);
+    EXPECT_EQ(m.bsdf(ParameterEvaluator({}, 0, {}, lambda)).grains[0], 0.3f);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <limits>
 
+#include "montelux/image/half.h"
 #include "montelux/image/image_read.h"
 #include "montelux/image/image_write.h"
 #include "montelux/image/placement.h"

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/scene/light_tracing_support.h"
 
 namespace montelux::testing {

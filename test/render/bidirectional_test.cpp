@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/render_session.h"
 #include "montelux/render/sample_record.h"
 #include "montelux/render/splat_pass.h"

@@ -4,6 +4,8 @@
 #include <cstring>
 #include <gtest/gtest.h>
 
+#include "montelux/mc/parallel/parallel_for.h"
+
 namespace montelux::testing {
 namespace {
 

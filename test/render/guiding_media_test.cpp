@@ -3,6 +3,8 @@
 #include "test/transport/volume_testing.h"
 #include <gtest/gtest.h>
 
+#include "montelux/mc/parallel/parallel_for.h"
+
 namespace montelux::testing {
 namespace {
 

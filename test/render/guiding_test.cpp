@@ -14,6 +14,7 @@
 #include "montelux/film/pixel_warnings.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/moments.h"
 #include "montelux/mc/stats/z_test.h"
 #include "montelux/render/checkpoint.h"

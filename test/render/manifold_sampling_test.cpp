@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/z_test.h"
 
 namespace montelux::testing {

@@ -11,6 +11,7 @@
 #include <numbers>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/merging_bias.h"
 #include "montelux/render/render_session.h"

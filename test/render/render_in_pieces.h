@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <utility>
 
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/render/checkpoint.h"
 #include "montelux/render/render_session.h"

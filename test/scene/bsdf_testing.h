@@ -334,8 +334,5 @@ inline BsdfEvaluation evaluate(const Bsdf& bsdf, Vec3f wo, Vec3f wi, auto& strea
                                TransportMode mode = TransportMode::radiance) {
     return std::visit([&](const auto& b) { return b.evaluate(wo, wi, mode, stream); }, bsdf);
 }
-inline bool is_specular(const Bsdf& bsdf) {
-    return std::visit([](const auto& b) { return b.is_specular(); }, bsdf);
-}
 
 } // namespace montelux::testing

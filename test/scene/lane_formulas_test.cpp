@@ -4,10 +4,12 @@
 #include <cstdint>
 #include <gtest/gtest.h>
 
+#include "montelux/mc/math/lane_functions.h"
 #include "montelux/mc/math/vec_lanes.h"
 #include "montelux/mc/random/sample_stream.h"
 #include "montelux/scene/bsdf/diffuse.h"
 #include "montelux/scene/shape/surface_point.h"
+#include "montelux/spectrum/spectrum_lanes.h"
 
 namespace montelux {
 namespace {

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "montelux/mc/math/lane_functions.h"
 #include "montelux/mc/math/vec_lanes.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/warp/sphere.h"

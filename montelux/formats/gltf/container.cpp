@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
 
@@ -50,7 +51,7 @@ Container open_container(std::vector<std::uint8_t> file, Diagnostics& diagnostic
     Container c{std::move(file), {}};
     const std::span<const std::uint8_t> bytes(c.bytes);
     if (bytes.size() < 4 || std::memcmp(bytes.data(), "glTF", 4) != 0) {
-        c.json = parse(bytes, diagnostics);
+        c.json = std::make_shared<const nlohmann::json>(parse(bytes, diagnostics));
         return c;
     }
     if (bytes.size() < header_bytes + chunk_header_bytes)
@@ -74,7 +75,7 @@ Container open_container(std::vector<std::uint8_t> file, Diagnostics& diagnostic
         at += size;
         if (!found_json) {
             if (type != json_chunk) diagnostics.error("", "its first chunk is not JSON");
-            c.json = parse(chunk, diagnostics);
+            c.json = std::make_shared<const nlohmann::json>(parse(chunk, diagnostics));
             found_json = true;
         } else if (type == binary_chunk && !c.chunk) {
             c.chunk = chunk;

@@ -2,7 +2,8 @@
 #pragma once
 
 #include <cstdint>
-#include <nlohmann/json.hpp>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
 #include <vector>
@@ -13,7 +14,7 @@ namespace montelux::gltf {
 
 struct Container {
     std::vector<std::uint8_t> bytes; // of the whole file
-    nlohmann::json json;
+    std::shared_ptr<const nlohmann::json> json;
     std::optional<std::span<const std::uint8_t>> chunk{}; // into `bytes`
 };
 

@@ -1,5 +1,6 @@
 #include "montelux/formats/gltf/document.h"
 
+#include "montelux/formats/gltf/container.h"
 #include "montelux/formats/gltf/meshopt.h"
 #include "montelux/formats/gltf/uri.h"
 #include "montelux/mc/math/error.h"
@@ -16,7 +17,7 @@ constexpr double most_growth = 64, always_allowed = 64 << 20;
 
 Document::Document(const Container& container, std::filesystem::path path, FileSource& source,
                    std::vector<std::filesystem::path>* files_read, Diagnostics& diagnostics)
-    : root_(container.json, "", diagnostics), container_(container), path_(std::move(path)), source_(source),
+    : root_(*container.json, "", diagnostics), container_(container), path_(std::move(path)), source_(source),
       files_read_(files_read), bytes_read_(static_cast<double>(container.bytes.size())) {}
 
 const std::vector<Value>& Document::all(std::string_view array) const {

@@ -10,10 +10,11 @@
 #include <vector>
 
 #include "montelux/formats/file_source.h"
-#include "montelux/formats/gltf/container.h"
 #include "montelux/formats/gltf/value.h"
 
 namespace montelux::gltf {
+
+struct Container;
 
 class Document {
   public:

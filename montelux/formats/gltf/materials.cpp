@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "montelux/formats/gltf/surface_material.h"
 #include "montelux/mc/math/nearest_name.h"

@@ -3,6 +3,7 @@
 
 #include "montelux/formats/mitsuba/basic_materials.h"
 #include "montelux/formats/mitsuba/refractive_index.h"
+#include "montelux/scene/bsdf/plastic.h"
 #include "montelux/scene/material/diffuse_material.h"
 #include "montelux/scene/material/plastic_material.h"
 

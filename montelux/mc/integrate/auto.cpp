@@ -14,6 +14,7 @@
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/integrate/witness/first_look.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/random/sobol.h"
 
 namespace montelux {

@@ -15,7 +15,7 @@
 
 #include "montelux/mc/integrate/evaluator.h"
 #include "montelux/mc/integrate/state_archive.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

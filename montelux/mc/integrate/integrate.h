@@ -11,7 +11,7 @@
 #include "montelux/mc/integrate/integrand.h"
 #include "montelux/mc/integrate/method.h"
 #include "montelux/mc/integrate/result.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

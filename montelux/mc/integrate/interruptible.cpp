@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "montelux/mc/parallel/parallel_for.h"
+
 namespace montelux {
 namespace {
 

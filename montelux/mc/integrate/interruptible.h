@@ -7,7 +7,7 @@
 #include <cstdint>
 
 #include "montelux/mc/integrate/integrand.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "montelux/mc/device/device_job.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux {
 

@@ -2,21 +2,17 @@
 #pragma once
 
 #include <algorithm>
-#include <atomic>
+#include <concepts>
+#include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <memory>
-#include <oneapi/tbb/blocked_range.h>
-#include <oneapi/tbb/global_control.h>
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/task_arena.h>
-#include <oneapi/tbb/task_group.h>
 #include <optional>
-#include <string>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
-#include "montelux/mc/math/error.h"
+#include "montelux/mc/math/function_ref.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 
@@ -27,47 +23,43 @@ inline constexpr int most_threads = 4096;
 // Limits nest: the smallest one holds. A number above the processors' changes nothing.
 class ThreadLimit {
   public:
-    explicit ThreadLimit(int threads) {
-        if (threads < 0 || threads > most_threads)
-            throw Error("threads", "expected a number from 0 to " + std::to_string(most_threads) + ", got " +
-                                       std::to_string(threads));
-        if (threads > 0)
-            control_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads));
-    }
+    // Throws Error unless 0 <= threads <= most_threads.
+    explicit ThreadLimit(int threads);
     ThreadLimit(const ThreadLimit&) = delete;
     ThreadLimit& operator=(const ThreadLimit&) = delete;
+    ~ThreadLimit();
 
   private:
-    std::optional<tbb::global_control> control_;
+    struct Control;
+    std::unique_ptr<Control> control_;
 };
 
 // Number of threads that a loop started now may use.
-inline int thread_count() {
-    auto allowed = tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism);
-    return std::min(static_cast<int>(std::min<std::size_t>(allowed, 1u << 20)),
-                    tbb::this_task_arena::max_concurrency());
-}
+int thread_count();
+
+void run_with_threads(int threads, FunctionRef<void()> f);
 
 // Runs f with loops on exactly this many threads, more than there are processors too; 0 leaves the number as
 // it is.
 template <typename F>
-decltype(auto) with_threads(int threads, const F& f) {
-    ThreadLimit limit(threads);
-    tbb::task_arena arena(threads > 0 ? threads : tbb::task_arena::automatic);
-    return arena.execute(f);
+auto with_threads(int threads, const F& f) {
+    using Result = std::invoke_result_t<const F&>;
+    if constexpr (std::is_void_v<Result>) {
+        run_with_threads(threads, f);
+    } else {
+        std::optional<Result> result;
+        run_with_threads(threads, [&] { result.emplace(f()); });
+        return std::move(*result);
+    }
 }
 
-// Asked between iterations; may be requested from any thread or from a signal handler.
-class CancelFlag {
-  public:
-    void request() noexcept { requested_.store(true, std::memory_order_relaxed); }
-    void reset() noexcept { requested_.store(false, std::memory_order_relaxed); }
-    bool requested() const noexcept { return requested_.load(std::memory_order_relaxed); }
+// Calls range(begin, end) for disjoint ranges that make up [0, count), each at least `grain` long where it can be;
+// false as soon as a range returned false. Exceptions as parallel_for.
+bool parallel_ranges(std::int64_t count, std::int64_t grain,
+                     FunctionRef<bool(std::int64_t, std::int64_t)> range);
 
-  private:
-    std::atomic<bool> requested_{false};
-    static_assert(std::atomic<bool>::is_always_lock_free);
-};
+// Calls f; a thread that waits in it for a loop takes no iterations of outer loops meanwhile.
+void isolate_loops(FunctionRef<void()> f);
 
 // Calls body(i) once for each i in [0, count), in no particular order. `grain` is the smallest run of
 // indices that one thread takes at a time: raise it when the body is tiny. The first exception of a body
@@ -76,31 +68,21 @@ template <typename Body>
 requires std::invocable<const Body&, std::int64_t>
 bool parallel_for(std::int64_t count, const Body& body, const CancelFlag* cancel = nullptr,
                   std::int64_t grain = 1) {
-    if (count <= 0) return true;
-    std::atomic<bool> complete{true};
-    // Isolated: a failure or cancellation here must not cancel a loop around this one, nor the reverse.
-    tbb::task_group_context context(tbb::task_group_context::isolated);
-    tbb::parallel_for(
-        tbb::blocked_range<std::int64_t>(0, count,
-                                         static_cast<std::size_t>(std::max<std::int64_t>(1, grain))),
-        [&](const tbb::blocked_range<std::int64_t>& range) {
-            for (std::int64_t i = range.begin(); i != range.end(); ++i) {
-                if (cancel && cancel->requested()) {
-                    complete.store(false, std::memory_order_relaxed);
-                    return;
-                }
-                body(i);
-            }
-        },
-        context);
-    return complete.load();
+    return parallel_ranges(count, grain, [&](std::int64_t begin, std::int64_t end) {
+        for (std::int64_t i = begin; i != end; ++i) {
+            if (cancel && cancel->requested()) return false;
+            body(i);
+        }
+        return true;
+    });
 }
 
-// parallel_for for the body of another loop that holds scratch memory or locks: a thread that waits for the
-// inner loop takes no iterations of outer ones meanwhile.
+// parallel_for for the body of another loop that holds scratch memory or locks.
 template <typename Body>
 bool parallel_for_isolated(std::int64_t count, const Body& body, const CancelFlag* cancel = nullptr) {
-    return tbb::this_task_arena::isolate([&] { return parallel_for(count, body, cancel); });
+    bool complete = false;
+    isolate_loops([&] { complete = parallel_for(count, body, cancel); });
+    return complete;
 }
 
 // combine(...combine(combine(map(0), map(1)), map(2))..., map(count - 1)), grouped into runs whose lengths

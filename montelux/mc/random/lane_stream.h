@@ -4,7 +4,7 @@
 #include <array>
 #include <cstdint>
 
-#include "montelux/mc/math/lanes.h"
+#include "montelux/mc/math/lane_functions.h"
 #include "montelux/mc/random/sample_stream.h"
 
 namespace montelux {

@@ -7,7 +7,7 @@
 #include <optional>
 
 #include "montelux/mc/math/vec.h"
-#include "montelux/spectrum/spectrum_lanes.h"
+#include "montelux/spectrum/spectrum_of.h"
 
 namespace montelux {
 

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/bsdf/bsdf_types.h"
 #include "montelux/scene/bsdf/fresnel.h"
 #include "montelux/scene/bsdf/ggx.h"
@@ -60,6 +61,5 @@ struct ConductorBsdfOf {
         return BsdfSample{.weight = fresnel * (masking.visible / masking.both), .wi = wi, .pdf = pdf};
     }
 };
-using ConductorBsdf = ConductorBsdfOf<Ggx>;
 
 } // namespace montelux

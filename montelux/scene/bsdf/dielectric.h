@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/bsdf/bsdf_types.h"
 #include "montelux/scene/bsdf/fresnel.h"
 #include "montelux/scene/bsdf/ggx.h"
@@ -104,6 +105,5 @@ struct DielectricBsdfOf {
         return s;
     }
 };
-using DielectricBsdf = DielectricBsdfOf<Ggx>;
 
 } // namespace montelux

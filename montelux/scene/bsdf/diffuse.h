@@ -2,6 +2,7 @@
 #pragma once
 
 #include "montelux/mc/warp/hemisphere.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/bsdf/bsdf_types.h"
 
 namespace montelux {
@@ -36,6 +37,5 @@ struct DiffuseBsdfOf {
         return sample_if(pdf > 0, BsdfSampleOf<T>{.weight = reflectance, .wi = wi, .pdf = pdf});
     }
 };
-using DiffuseBsdf = DiffuseBsdfOf<float>;
 
 } // namespace montelux

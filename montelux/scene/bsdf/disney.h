@@ -5,6 +5,7 @@
 #include <cmath>
 #include <optional>
 
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/bsdf/bsdf_types.h"
 #include "montelux/scene/bsdf/microfacet_normals.h"
 
@@ -139,8 +140,5 @@ struct DisneyBsdf {
         return lobes.sample(wo, mode, uc, u);
     }
 };
-using DisneySolidBsdf = DisneyBsdf<DisneySolid, true>;
-using DisneyOpaqueBsdf = DisneyBsdf<DisneySolid, false>;
-using DisneySheetBsdf = DisneyBsdf<DisneySheet, true>;
 
 } // namespace montelux

@@ -20,7 +20,7 @@ namespace montelux {
 // direction. `evaluate` is an unbiased estimate, not the value. Its density is not known in closed form.
 // evaluate and sample report as pdf a fixed positive function of the two directions; MIS weights may use it
 // (they sum to 1 for any). The weight of sample is f |cos| over the true density. A coat may be stochastic itself.
-template <typename Base, typename Coat = DielectricBsdf>
+template <typename Base, typename Coat>
 struct LayeredBsdf {
     Coat coat;
     Base base;

@@ -1,15 +1,11 @@
 // MicrofacetNormals: microfacet normals of a distribution that is chosen while the program runs.
 #pragma once
 
-#include <cstdint>
-
 #include "montelux/scene/bsdf/beckmann.h"
 #include "montelux/scene/bsdf/ggx.h"
+#include "montelux/scene/bsdf/microfacet_distribution.h"
 
 namespace montelux {
-
-// With its masking and shadowing: height-correlated for `ggx`, G1(wo) G1(wi) for the others, as in Mitsuba.
-enum class MicrofacetDistribution : std::uint8_t { ggx, ggx_separable, beckmann };
 
 struct MicrofacetNormals {
     float alpha_x = 0, alpha_y = 0;

@@ -3,6 +3,7 @@
 
 #include <optional>
 
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/bsdf/bsdf_types.h"
 #include "montelux/scene/bsdf/conductor.h"
 #include "montelux/scene/bsdf/dielectric.h"
@@ -51,8 +52,5 @@ struct TintedBsdf {
 };
 
 // Of any distribution of normals.
-using TintedConductorBsdf = TintedBsdf<ConductorBsdfOf<MicrofacetNormals>>;
-using TintedDielectricBsdf = TintedBsdf<DielectricBsdfOf<MicrofacetNormals>>;
-using TintedThinDielectricBsdf = TintedBsdf<ThinDielectricBsdf>;
 
 } // namespace montelux

@@ -1,8 +1,7 @@
-// The closed set of BSDFs that materials make.
+// The BSDFs that materials make.
 #pragma once
 
-#include <variant>
-
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/bsdf/coating.h"
 #include "montelux/scene/bsdf/conductor.h"
 #include "montelux/scene/bsdf/dielectric.h"
@@ -19,16 +18,3 @@
 #include "montelux/scene/bsdf/subsurface_boundary.h"
 #include "montelux/scene/bsdf/thin_dielectric.h"
 #include "montelux/scene/bsdf/tinted.h"
-
-namespace montelux {
-
-using UntiltedBsdf =
-    std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,
-                 CoatedDiffuseBsdf, LayeredBsdf<DiffuseBsdf>, LayeredBsdf<ConductorBsdf>, HairBsdf,
-                 MeasuredBsdf, SubsurfaceBsdf, MultiscatterConductorBsdf, MultiscatterDielectricBsdf,
-                 LayeredBsdf<DiffuseBsdf, MultiscatterDielectricBsdf>,
-                 LayeredBsdf<MultiscatterConductorBsdf, MultiscatterDielectricBsdf>, PrincipledBsdf<false>,
-                 PrincipledBsdf<true>, TintedConductorBsdf, TintedDielectricBsdf, TintedThinDielectricBsdf,
-                 PlasticBsdf, DisneySolidBsdf, DisneyOpaqueBsdf, DisneySheetBsdf>;
-
-} // namespace montelux

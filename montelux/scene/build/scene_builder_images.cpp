@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "montelux/image/half.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/scene/build/scene_builder.h"
 #include "montelux/scene/light/environment/environment_grid.h"

@@ -4,6 +4,7 @@
 #include <concepts>
 #include <string_view>
 
+#include "montelux/scene/bsdf/measured_brdf.h"
 #include "montelux/scene/digest/hash_textures.h"
 #include "montelux/scene/digest/scene_hasher.h"
 #include "montelux/scene/material/material_model.h"

@@ -1,7 +1,7 @@
 // CoatedDiffuseMaterial: a matt surface under a clear coat.
 #pragma once
 
-#include "montelux/scene/bsdf/bsdf.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/coating_parameters.h"
 #include "montelux/scene/material/surface_detail.h"
 
@@ -21,14 +21,7 @@ struct CoatedDiffuseMaterial {
         CoatingParameters::visit_parameters(m.coating, visit, "");
     }
 
-    template <typename Evaluator>
-    Bsdf bsdf(const Evaluator& at) const {
-        const SampledSpectrum rho = at.reflectance(reflectance);
-        if (const CoatingTable* table = at.coating_table())
-            return CoatedDiffuseBsdf{table, table->base_albedo(rho)};
-        const float eta = at.refractive_index(coating.eta);
-        return at.layered(coating, eta, DiffuseBsdf{rho}, Ggx{0.7f, 0.7f});
-    }
+    Bsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

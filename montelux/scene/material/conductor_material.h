@@ -1,7 +1,7 @@
 // ConductorMaterial: a metal.
 #pragma once
 
-#include "montelux/scene/bsdf/bsdf.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -26,13 +26,7 @@ struct ConductorMaterial {
         visit({.name = "distribution", .added = true}, m.distribution);
     }
 
-    template <typename Evaluator>
-    Bsdf bsdf(const Evaluator& at) const {
-        const ConductorBsdf b = at.conductor(metal, roughness, 1);
-        if (has_no_effect(distribution) && has_no_effect(specular_reflectance)) return b;
-        return TintedConductorBsdf{{b.eta, b.k, {b.normals, distribution}},
-                                   at.reflectance(specular_reflectance)};
-    }
+    Bsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

@@ -1,7 +1,7 @@
 // DielectricMaterial: glass, water.
 #pragma once
 
-#include "montelux/scene/bsdf/bsdf.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -30,16 +30,7 @@ struct DielectricMaterial {
         visit({.name = "distribution", .added = true}, m.distribution);
     }
 
-    template <typename Evaluator>
-    Bsdf bsdf(const Evaluator& at) const {
-        const DielectricBsdf b{at.refractive_index(eta), at.roughness(roughness)};
-        if (has_no_effect(distribution) && has_no_effect(specular_reflectance) &&
-            has_no_effect(specular_transmittance))
-            return b;
-        return TintedDielectricBsdf{{b.eta, {b.normals, distribution}},
-                                    at.reflectance(specular_reflectance),
-                                    at.reflectance(specular_transmittance)};
-    }
+    Bsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

@@ -1,7 +1,7 @@
 // DiffuseMaterial: Lambert's matt surface.
 #pragma once
 
-#include "montelux/scene/bsdf/diffuse.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -19,10 +19,7 @@ struct DiffuseMaterial {
               m.reflectance);
     }
 
-    template <typename Evaluator>
-    DiffuseBsdf bsdf(const Evaluator& at) const {
-        return {at.reflectance(reflectance)};
-    }
+    DiffuseBsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

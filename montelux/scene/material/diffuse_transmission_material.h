@@ -1,7 +1,7 @@
 // DiffuseTransmissionMaterial: a thin matt translucent sheet.
 #pragma once
 
-#include "montelux/scene/bsdf/diffuse_transmission.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -22,11 +22,7 @@ struct DiffuseTransmissionMaterial {
         visit({.name = "scale", .doc = "Factor of reflectance and transmittance."}, m.scale);
     }
 
-    template <typename Evaluator>
-    DiffuseTransmissionBsdf bsdf(const Evaluator& at) const {
-        const SampledSpectrum r = at(reflectance), t = at(transmittance);
-        return {clamp(r * scale, 0, 1), clamp(t * scale, 0, 1)};
-    }
+    DiffuseTransmissionBsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

@@ -1,7 +1,7 @@
 // HairMaterial: hair and fur, on curves.
 #pragma once
 
-#include "montelux/scene/bsdf/hair.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -37,12 +37,7 @@ struct HairMaterial {
         visit({.name = "alpha", .doc = "Tilt of the scales in degrees.", .least = -90, .most = 90}, m.alpha);
     }
 
-    template <typename Evaluator>
-    HairBsdf bsdf(const Evaluator& at) const {
-        const float n = at(beta_n);
-        return HairBsdf::make(at.offset_across(), at(eta), at.hair_absorption(color, n), at(beta_m), n,
-                              at(alpha));
-    }
+    HairBsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

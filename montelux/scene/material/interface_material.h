@@ -1,7 +1,7 @@
 // InterfaceMaterial: a boundary of media that does not scatter.
 #pragma once
 
-#include "montelux/scene/bsdf/thin_dielectric.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -17,10 +17,7 @@ struct InterfaceMaterial {
     template <typename Self, typename Visit>
     static void visit_parameters(Self&, Visit&&) {}
 
-    template <typename Evaluator>
-    ThinDielectricBsdf bsdf(const Evaluator&) const {
-        return {1};
-    }
+    ThinDielectricBsdf bsdf(const ParameterEvaluator&) const;
 };
 
 } // namespace montelux

@@ -1,4 +1,4 @@
-// Material: the variant of all materials, one file per kind; all satisfy MaterialModel.
+// Material: the variant of all materials, one file per kind; all satisfy MaterialModel (material_model.cpp).
 #pragma once
 
 #include <type_traits>

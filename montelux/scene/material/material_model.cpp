@@ -1,6 +1,7 @@
 #include "montelux/scene/material/material_model.h"
 
-#include <tuple>
+#include <concepts>
+#include <type_traits>
 #include <utility>
 
 #include "montelux/scene/material/parameter_evaluator.h"
@@ -9,9 +10,20 @@ namespace montelux {
 
 namespace {
 
+// What a material has.
+template <typename M>
+concept MaterialModel = requires(const M& m, M& changed, const ParameterEvaluator& at) {
+    { M::name } -> std::convertible_to<const char*>; // in Python; pbrt's files use small letters
+    { M::doc } -> std::convertible_to<const char*>;
+    { m.detail } -> std::same_as<const SurfaceDetail&>;
+    // Its own parameters (parameter.h), without those of `detail`.
+    M::visit_parameters(m, [](const ParameterInfo&, const auto&) {});
+    M::visit_parameters(changed, [](const ParameterInfo&, auto&) {});
+    { m.bsdf(at) } -> std::convertible_to<Bsdf>;
+};
 template <typename... M>
 constexpr bool all_are_material_models(std::type_identity<std::variant<M...>>) {
-    return (MaterialModel<M, ParameterEvaluator> && ...);
+    return (MaterialModel<M> && ...);
 }
 static_assert(all_are_material_models(std::type_identity<Material>{}));
 

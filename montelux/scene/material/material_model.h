@@ -1,26 +1,13 @@
-// MaterialModel: the concept of a material, and functions derived from its list of parameters.
+// Functions derived from a material's list of parameters.
 #pragma once
 
 #include <concepts>
 #include <type_traits>
 
-#include "montelux/scene/bsdf/bsdf.h"
 #include "montelux/scene/material/material.h"
 #include "montelux/spectrum/named_spectra.h"
 
 namespace montelux {
-
-// An Evaluator (parameter_evaluator.h) gives the values of parameters at a point.
-template <typename M, typename Evaluator>
-concept MaterialModel = requires(const M& m, M& changed, const Evaluator& at) {
-    { M::name } -> std::convertible_to<const char*>; // in Python; pbrt's files use small letters
-    { M::doc } -> std::convertible_to<const char*>;
-    { m.detail } -> std::same_as<const SurfaceDetail&>;
-    // Its own parameters (parameter.h), without those of `detail`.
-    M::visit_parameters(m, [](const ParameterInfo&, const auto&) {});
-    M::visit_parameters(changed, [](const ParameterInfo&, auto&) {});
-    { m.bsdf(at) } -> std::convertible_to<Bsdf>;
-};
 
 // Calls f(std::type_identity<M>) for every material.
 template <typename F>

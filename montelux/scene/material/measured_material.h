@@ -1,8 +1,7 @@
 // MeasuredMaterial: reflection as measured by a gonio-photometer.
 #pragma once
 
-#include "montelux/scene/bsdf/measured_brdf.h"
-#include "montelux/scene/material/parameter.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -19,10 +18,7 @@ struct MeasuredMaterial {
         visit({.name = "brdf", .doc = "What Scene.measured_brdf() returns.", .pbrt = "filename"}, m.brdf);
     }
 
-    template <typename Evaluator>
-    MeasuredBsdf bsdf(const Evaluator& at) const {
-        return at.measured(brdf);
-    }
+    MeasuredBsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

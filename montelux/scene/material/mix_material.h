@@ -6,7 +6,7 @@
 
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/random/uniform_bits.h"
-#include "montelux/scene/bsdf/diffuse.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -39,10 +39,7 @@ struct MixMaterial {
     }
 
     // For the concept: no path asks for it.
-    template <typename Evaluator>
-    DiffuseBsdf bsdf(const Evaluator&) const {
-        return {SampledSpectrum(0)};
-    }
+    DiffuseBsdf bsdf(const ParameterEvaluator&) const;
 };
 
 } // namespace montelux

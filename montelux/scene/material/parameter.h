@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "montelux/scene/bsdf/microfacet_normals.h"
+#include "montelux/scene/bsdf/microfacet_distribution.h"
 #include "montelux/scene/texture/texture.h"
 
 namespace montelux {

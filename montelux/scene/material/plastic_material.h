@@ -1,7 +1,7 @@
 // PlasticMaterial: a matt base under a clear interface that absorbs nothing.
 #pragma once
 
-#include "montelux/scene/bsdf/plastic.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -37,14 +37,7 @@ struct PlasticMaterial {
               m.internal_reflectance);
     }
 
-    template <typename Evaluator>
-    PlasticBsdf bsdf(const Evaluator& at) const {
-        const PlasticTable& table = at.plastic_table();
-        return {&table,
-                {at.microfacets(alpha, alpha), distribution},
-                table.base_albedo(at.reflectance(reflectance), nonlinear, internal_reflectance),
-                at.reflectance(specular_reflectance)};
-    }
+    PlasticBsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

@@ -1,7 +1,7 @@
 // SidedMaterial: one material on each side of a surface.
 #pragma once
 
-#include "montelux/scene/bsdf/diffuse.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -26,10 +26,7 @@ struct SidedMaterial {
     Index side(bool is_front) const { return (is_front ? front : back).index; }
 
     // For the concept: no path asks for it.
-    template <typename Evaluator>
-    DiffuseBsdf bsdf(const Evaluator&) const {
-        return {SampledSpectrum(0)};
-    }
+    DiffuseBsdf bsdf(const ParameterEvaluator&) const;
 };
 
 } // namespace montelux

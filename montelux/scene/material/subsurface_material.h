@@ -1,8 +1,7 @@
 // SubsurfaceMaterial: the surface of a translucent body such as skin, marble or milk.
 #pragma once
 
-#include "montelux/scene/bsdf/subsurface_boundary.h"
-#include "montelux/scene/material/parameter.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -25,10 +24,7 @@ struct SubsurfaceMaterial {
         visit({.name = "interior"}, m.interior);
     }
 
-    template <typename Evaluator>
-    SubsurfaceBsdf bsdf(const Evaluator& at) const {
-        return SubsurfaceBsdf::make(eta, at.roughness(roughness));
-    }
+    SubsurfaceBsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

@@ -5,6 +5,8 @@
 
 namespace montelux {
 
+class ParameterEvaluator;
+
 struct SurfaceDetail {
     // Height above the surface in units of length. A texture gives bumps; a constant has no effect.
     FloatParameter displacement{};

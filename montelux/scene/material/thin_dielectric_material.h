@@ -1,7 +1,7 @@
 // ThinDielectricMaterial: a pane of glass.
 #pragma once
 
-#include "montelux/scene/bsdf/bsdf.h"
+#include "montelux/scene/bsdf/bsdf_list.h"
 #include "montelux/scene/material/surface_detail.h"
 
 namespace montelux {
@@ -26,13 +26,7 @@ struct ThinDielectricMaterial {
               m.specular_transmittance);
     }
 
-    template <typename Evaluator>
-    Bsdf bsdf(const Evaluator& at) const {
-        const ThinDielectricBsdf b{at.refractive_index(eta)};
-        if (has_no_effect(specular_reflectance) && has_no_effect(specular_transmittance)) return b;
-        return TintedThinDielectricBsdf{b, at.reflectance(specular_reflectance),
-                                        at.reflectance(specular_transmittance)};
-    }
+    Bsdf bsdf(const ParameterEvaluator& at) const;
 };
 
 } // namespace montelux

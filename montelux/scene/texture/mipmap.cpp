@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "montelux/image/half.h"
 #include "montelux/mc/math/error.h"
 
 namespace montelux {

@@ -8,7 +8,7 @@
 
 #include "montelux/mc/math/frame.h"
 #include "montelux/mc/random/stream.h"
-#include "montelux/scene/bsdf/bsdf_model.h"
+#include "montelux/scene/bsdf/bsdf.h"
 #include "montelux/scene/medium/phase_function.h"
 #include "montelux/transport/guiding/guiding_trace.h"
 #include "montelux/transport/path_state.h"
@@ -87,12 +87,9 @@ inline float guided_survival(const GuidingRegion& region, SampledSpectrum throug
 
 // The same at a glossy vertex, where the region does not know what the path can bring: what is not absorbed on average.
 // The weight of a direction does not count, or roulette would end paths that reach strong light by a weak lobe.
-template <typename Bsdf>
-float glossy_survival(const Bsdf& bsdf, Vec3f wo, int depth) {
+inline float glossy_survival(const Bsdf& bsdf, Vec3f wo, int depth) {
     constexpr float least = 0.3f;
-    if (depth <= 2) return 1;
-    const float albedo = max_value(std::visit([&](const auto& b) { return b.albedo(wo); }, bsdf));
-    return std::clamp(albedo, least, 1.0f);
+    return depth <= 2 ? 1 : std::clamp(max_value(albedo(bsdf, wo)), least, 1.0f);
 }
 
 // The probability that Russian roulette lets a light sample live which brings `contribution` unless something occludes

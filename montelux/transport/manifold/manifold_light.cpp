@@ -3,7 +3,6 @@
 #include <cmath>
 #include <optional>
 
-#include "montelux/scene/bsdf/narrow_lobes.h"
 #include "montelux/scene/light/emissive_shape.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/light/shadow_ray.h"
@@ -173,9 +172,8 @@ void add_manifold_light(const Casters& casters, const SceneView& scene, RayTrace
     const SurfacePoint s = estimate.surface_at(state.ray, hit);
     const Vec3f w = -state.ray.d;
     const SurfaceBsdf surface = make_bsdf(scene, s, w, estimate.context_of(s), lambda);
-    if (std::visit([](const auto& b) { return b.is_specular(); }, surface.bsdf)) return;
-    state.scatters_narrowly =
-        std::visit([](const auto& b) { return least_alpha(b); }, surface.bsdf) < narrow_alpha;
+    if (is_specular(surface.bsdf)) return;
+    state.scatters_narrowly = least_alpha(surface.bsdf) < narrow_alpha;
     const Vec3f wo = surface.frame.to_local(w);
     if (wo.z == 0) return;
 

@@ -2,6 +2,7 @@
 #include "test/formats/gltf/model.h"
 #include <array>
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 #ifdef MONTELUX_MESHOPT
 #include <meshoptimizer.h>

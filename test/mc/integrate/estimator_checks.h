@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/z_test.h"
 
 namespace montelux {

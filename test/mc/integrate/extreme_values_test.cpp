@@ -5,6 +5,7 @@
 
 #include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux {
 namespace {

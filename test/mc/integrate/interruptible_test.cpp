@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/interruptible.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "montelux/mc/integrate/mis.h"
 #include "montelux/mc/math/frame.h"
-#include "montelux/mc/math/lanes.h"
+#include "montelux/mc/math/lane_functions.h"
 #include "montelux/mc/math/sin_cos.h"
 #include "montelux/mc/random/philox.h"
 #include "montelux/mc/warp/disk.h"

@@ -5,6 +5,7 @@
 #include <thread>
 #include <vector>
 
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {

@@ -13,6 +13,7 @@
 #include "montelux/mc/integrate/adaptive/mixture_estimate.h"
 #include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/integrate/witness/first_look.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/random/sobol.h"

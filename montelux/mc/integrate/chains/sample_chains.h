@@ -11,7 +11,7 @@
 #include "montelux/mc/integrate/chains/draw_summary.h"
 #include "montelux/mc/integrate/domain.h"
 #include "montelux/mc/integrate/integrand.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
 
 namespace montelux {

@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "montelux/mc/parallel/parallel_for.h"
+
 namespace montelux {
 namespace {
 

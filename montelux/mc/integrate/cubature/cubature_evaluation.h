@@ -8,7 +8,7 @@
 #include "montelux/mc/integrate/cubature/cubature_regions.h"
 #include "montelux/mc/integrate/cubature/symmetric_rule.h"
 #include "montelux/mc/integrate/evaluator.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

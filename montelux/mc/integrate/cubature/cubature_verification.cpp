@@ -12,6 +12,7 @@
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/integrate/witness/first_look.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux {
 namespace {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "montelux/mc/integrate/sampling.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux {
 namespace {

@@ -9,6 +9,7 @@
 #include "montelux/mc/integrate/lane_sum.h"
 #include "montelux/mc/integrate/quasi/randomised_points.h"
 #include "montelux/mc/integrate/replicates.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
 
 namespace montelux {

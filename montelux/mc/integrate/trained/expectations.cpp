@@ -7,6 +7,7 @@
 
 #include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/covariance_moments.h"
 
 namespace montelux {

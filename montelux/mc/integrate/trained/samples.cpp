@@ -10,6 +10,7 @@
 
 #include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 
 namespace montelux {
 namespace {

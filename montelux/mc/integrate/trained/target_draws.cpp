@@ -8,6 +8,7 @@
 
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
 
 namespace montelux {

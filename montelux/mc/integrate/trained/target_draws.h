@@ -9,7 +9,7 @@
 #include "montelux/mc/integrate/evaluator.h"
 #include "montelux/mc/integrate/integrand_scale.h"
 #include "montelux/mc/integrate/trained/trained_density.h"
-#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/cancel_flag.h"
 
 namespace montelux {
 

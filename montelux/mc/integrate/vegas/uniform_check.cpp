@@ -6,6 +6,7 @@
 
 #include "montelux/mc/integrate/device_values.h"
 #include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
 
 namespace montelux {

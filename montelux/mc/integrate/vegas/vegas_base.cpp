@@ -9,6 +9,7 @@
 #include "montelux/mc/integrate/extreme_values.h"
 #include "montelux/mc/integrate/trained/unit_density.h"
 #include "montelux/mc/integrate/unit_points.h"
+#include "montelux/mc/math/error.h"
 #include "montelux/mc/random/hash.h"
 
 namespace montelux {

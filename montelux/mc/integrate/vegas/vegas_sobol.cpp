@@ -8,6 +8,7 @@
 #include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/integrate/vegas/vegas_base.h"
+#include "montelux/mc/math/error.h"
 
 namespace montelux {
 namespace {

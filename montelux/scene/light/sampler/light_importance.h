@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "montelux/mc/math/lanes.h"
 #include "montelux/mc/math/vec.h"
 
 namespace montelux {

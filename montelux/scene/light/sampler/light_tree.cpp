@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "montelux/mc/math/error.h"
+#include "montelux/mc/math/lane_functions.h"
 #include "montelux/mc/math/vec_lanes.h"
 #include "montelux/scene/light/sampler/light_cone.h"
 #include "montelux/scene/light/sampler/light_split.h"

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "montelux/mc/math/lanes.h"
 #include "montelux/mc/math/vector_bytes.h"
 #include "montelux/scene/index.h"
 #include "montelux/scene/light/light_model.h"

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/lane_functions.h"
 
 namespace montelux {
 

@@ -8,6 +8,7 @@
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/z_test.h"
 
