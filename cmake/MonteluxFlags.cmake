@@ -53,6 +53,9 @@ if(MONTELUX_LTO)
     endif()
 endif()
 
+# Code that runs seldom: what an optimiser wins there is not worth the wait for it.
+set(MONTELUX_COLD_FLAGS $<$<CONFIG:Release>:-O1>)
+
 find_program(MONTELUX_CCACHE ccache)
 mark_as_advanced(MONTELUX_CCACHE)
 if(PROJECT_IS_TOP_LEVEL AND MONTELUX_CCACHE AND NOT CMAKE_CXX_COMPILER_LAUNCHER)

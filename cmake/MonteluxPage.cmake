@@ -7,6 +7,3 @@ add_custom_command(OUTPUT ${page_data}
     COMMAND ${CMAKE_COMMAND} -D OUTPUT=${page_data} -D FOLDER=${page_folder} -P ${page_script}
     DEPENDS ${page_files} ${page_script} COMMENT "Embedding the viewer's page" VERBATIM)
 target_sources(montelux_room_view PRIVATE ${page_data})
-# Boost.Beast takes long to compile and defines much.
-set_source_files_properties(montelux/view/tev_stream.cpp montelux/view/view_client.cpp montelux/view/view_connection.cpp montelux/view/view_hub.cpp
-    montelux/view/view_server.cpp PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)

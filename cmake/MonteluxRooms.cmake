@@ -1,9 +1,9 @@
 # One CMake target per room, and the libraries made of rooms.
 
-# montelux_room(path/of/room [USES rooms...] [LINKS libraries...] [INCLUDES directories...])
-# Compiles montelux/<room>/**.cpp; its unit tests are test/<room>/**_test.cpp.
+# montelux_room(path/of/room [COLD] [USES rooms...] [LINKS libraries...] [INCLUDES directories...])
+# Compiles montelux/<room>/**.cpp; its unit tests are test/<room>/**_test.cpp. COLD: nothing in it runs once a sample.
 function(montelux_room room)
-    cmake_parse_arguments(ARG "" "" "USES;LINKS;INCLUDES" ${ARGN})
+    cmake_parse_arguments(ARG "COLD" "" "USES;LINKS;INCLUDES" ${ARGN})
     string(REPLACE "/" "_" name "montelux_room_${room}")
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/montelux/${room}/*.cpp)
     if(sources)
@@ -11,7 +11,11 @@ function(montelux_room room)
         set(scope PUBLIC)
         target_include_directories(${name} SYSTEM PRIVATE ${ARG_INCLUDES})
         target_link_libraries(${name} PRIVATE montelux_flags)
-        target_compile_options(${name} PRIVATE ${MONTELUX_LTO_FLAGS})
+        if(ARG_COLD)
+            target_compile_options(${name} PRIVATE ${MONTELUX_COLD_FLAGS})
+        else()
+            target_compile_options(${name} PRIVATE ${MONTELUX_LTO_FLAGS})
+        endif()
     else()
         add_library(${name} INTERFACE)
         set(scope INTERFACE)
