@@ -38,8 +38,9 @@ SampleContext::SampleContext(const SceneDescription& description, const SamplerS
     : sampler_(sampler), scene_(scene), camera_(camera), moves_(moves(description.scene)),
       normals_in_camera_space_(description.film.layers.in_camera_space), layers_(description, scene, camera),
       integrator_(make_integrator(description, integrator, scene, camera)),
-      merges_(montelux::merges(integrator)), filter_(description.film.filter), exposure_(description),
-      white_(RgbColorSpace::srgb().illuminant()),
+      merges_(montelux::merges(integrator)), filter_(description.film.filter),
+      most_splat_(static_cast<float>(SplatFilm::most) / std::max(1.0f, filter_.normalized({}))),
+      exposure_(description), white_(RgbColorSpace::srgb().illuminant()),
       white_scale_(static_cast<float>(1 / integrate_luminance(white_))),
       can_be_guided_((std::holds_alternative<PathIntegrator>(integrator_) ||
                       std::holds_alternative<VolumePathIntegrator>(integrator_)) &&
@@ -122,9 +123,7 @@ void SampleContext::finish_splats(const SplatList& splats, const SampledWaveleng
         if (result.bad) return;
         const FilmExposure::Exposed exposed = exposure_({splat.radiance, lambda, {}, 0}, 1);
         result.bad = exposed.bad;
-        // The filter's weight in a pixel may exceed 1.
-        if (!result.bad && max_component(exposed.rgb) > static_cast<float>(SplatFilm::most * 0x1p-10))
-            result.bad = BadSample::Kind::infinite;
+        if (!result.bad && max_component(exposed.rgb) > most_splat_) result.bad = BadSample::Kind::infinite;
         if (exposed.clamp < 1) [[unlikely]]
             result.clamped += exposed.clamped();
         out.push_back({splat.film, exposed.rgb});

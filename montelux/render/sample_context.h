@@ -148,6 +148,7 @@ class SampleContext {
     std::shared_ptr<const Casters> casters_; // null: no manifold sampling
     bool merges_;
     PixelFilterSampler filter_;
+    float most_splat_; // the filter's weight in a pixel, greatest at its centre, may exceed 1
     FilmExposure exposure_;
     Sensor albedo_sensor_;
     // Spectrum of the white light of albedos.

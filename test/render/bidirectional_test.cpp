@@ -103,6 +103,26 @@ TEST(BidirectionalPictures, AnyNumberOfThreadsGivesTheSameBits) {
     }
 }
 
+// A light path may bring to one pixel as much as the pixels of the film together: of a bright lamp, a large number.
+TEST(BidirectionalPictures, BrightLightPathsAreNotLost) {
+    SceneBuilder b = bidirectional_room(40, 24);
+    b.description.sampler.spp = 4;
+    const Image plain = render(b.description).develop();
+    constexpr float scale = 0x1p20f;
+    b.description.film.iso *= scale;
+    Film film(b.description.film);
+    EXPECT_EQ(Renderer(b.description).render(film).bad.count(), 0u);
+    const Image bright = film.develop();
+    double sum = 0, scaled = 0;
+    for (int y = 0; y < plain.height(); ++y)
+        for (int x = 0; x < plain.width(); ++x) {
+            sum += double(plain.value(x, y, 1));
+            scaled += double(bright.value(x, y, 1) / scale);
+        }
+    EXPECT_GT(sum, 0);
+    EXPECT_NEAR(scaled / sum, 1, 1e-6);
+}
+
 // Interrupted within passes, saved, and resumed.
 TEST(BidirectionalPictures, ResumedRendersHaveTheSameBits) {
     const TemporaryFolder folder;
