@@ -2,7 +2,7 @@
 SHELL := /bin/bash
 .SHELLFLAGS := -eu -o pipefail -c
 .DEFAULT_GOAL := help
-.PHONY: help demo lab docs build test test-all test-view test-peers test-methods test-packages test-blender blender packages wheels fuzz bench bench-integrate bench-hard bench-typed bench-render lint format install dependencies clean
+.PHONY: help demo lab docs build test test-all test-view test-peers test-methods test-packages test-blender test-mutants blender packages wheels fuzz bench bench-integrate bench-hard bench-typed bench-render lint format install dependencies clean
 
 JOBS ?= $(shell cmake/jobs.sh)
 BUILD := build/release
@@ -37,17 +37,17 @@ build: dependencies ## the program, at build/release/montelux
 	cmake --preset release
 	cmake --build $(BUILD) --parallel $(JOBS) --target montelux
 
-test: dependencies ## fast tests, then the same tests under the address and undefined-behaviour sanitizers
+test: dependencies ## fast tests, those where memory can go wrong also under the address and undefined-behaviour sanitizers
 	cmake --preset test
 	cmake --build build/test --parallel $(JOBS)
-	cmake --preset asan
-	cmake --build build/asan --parallel $(JOBS)
-	cmake/run-tests.sh fast $(JOBS) build/test build/asan
+	cmake/run-tests.sh fast $(JOBS) build/test
 
-test-all: dependencies ## every test, the slow ones too, with each file compiled alone (without sanitizers)
+test-all: dependencies ## every test, the slow ones too, with each file compiled alone; then the whole house under the sanitizers (hours)
 	cmake --preset test-all
 	cmake --build build/test-all --parallel $(JOBS)
-	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test-all
+	cmake --preset asan
+	cmake --build build/asan --parallel $(JOBS)
+	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test-all build/asan
 
 PEERS := build/test-peers
 PEER_SCENES ?= ../shared/scenes/mitsuba/docs/scenes
@@ -64,6 +64,9 @@ test-methods: build ## guided, bidirectional, ... pictures beside path tracing's
 	python=$(LAB_PYTHON); test -x $$python || python=python3; \
 	$$python test/peers/methods_agreement.py $(BUILD)/montelux --json $(METHODS_OUT)/result.json \
 	    $(if $(ONLY),--only $(ONLY)) | tee $(METHODS_OUT)/result.md
+
+test-mutants: dependencies ## plant each fault of test/mutants, and say which test notices it (hours; less with ONLY=mc_warp,film)
+	test/mutants/run_mutants.py --jobs $(JOBS) --json build/mutants/result.json $(if $(ONLY),--only $(ONLY))
 
 test-view: dependencies ## the viewer's page in Chromium, alone and with the program (some minutes)
 	cmake/install-dependencies.sh browser
