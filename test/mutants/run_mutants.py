@@ -1,0 +1,157 @@
+#!/usr/bin/env python3
+"""Plants each fault of test/mutants in a copy of the sources, and says which test of `make test` notices it.
+
+A mutant is a patch below a line that says the mistake. The tests of its own room are asked first, then those of the
+room with the sanitizers, then all others; the first failure ends a mutant. Exit code 1: one survives, or no longer
+applies or compiles.
+"""
+
+import argparse
+import json
+import pathlib
+import re
+import shutil
+import subprocess
+import sys
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+MUTANTS = ROOT / "test" / "mutants"
+LIMIT = 3600  # seconds for the tests of one mutant: one that never ends is noticed, too
+
+
+def run(command, folder, limit=None):
+    """Exit code and output; 124 at the limit."""
+    try:
+        done = subprocess.run(command, cwd=folder, timeout=limit, text=True, errors="replace",
+                              stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        return done.returncode, done.stdout
+    except subprocess.TimeoutExpired as e:
+        return 124, (e.stdout or b"").decode(errors="replace")
+
+
+class Copy:
+    """The sources beside a link to the shared data, with the build of `make test`."""
+
+    def __init__(self, folder, jobs):
+        self.source, self.jobs = folder / "source", str(jobs)
+        self.source.mkdir(parents=True, exist_ok=True)
+        shared, link = ROOT.parent / "shared", folder / "shared"
+        if shared.exists() and not link.exists():
+            link.symlink_to(shared)
+        self.refresh()
+        code, output = run(["cmake", "--preset", "test"], self.source)
+        if code != 0:
+            sys.exit("CMake fails without any mutant:\n" + output[-4000:])
+        targets = run(["ninja", "-C", "build/test", "-t", "targets", "all"], self.source)[1]
+        self.targets = set(re.findall(r"^(\S+): ", targets, re.M))
+
+    def refresh(self):
+        """Files that differ are copied: what has been built stays valid."""
+        listed = run(["git", "ls-files", "-co", "--exclude-standard"], ROOT)[1].splitlines()
+        for name in listed:
+            here, there = ROOT / name, self.source / name
+            if not here.is_file():
+                there.unlink(missing_ok=True)
+            elif not there.exists() or there.read_bytes() != here.read_bytes():
+                there.parent.mkdir(parents=True, exist_ok=True)
+                shutil.copyfile(here, there)
+                shutil.copymode(here, there)
+
+    def build(self, target=None):
+        """Output of a build that failed; empty: it did not."""
+        code, output = run(["cmake", "--build", "build/test", "--parallel", self.jobs] +
+                           (["--target", target] if target else []), self.source)
+        return "" if code == 0 else output
+
+    def failed_test(self, select):
+        """Name of a fast test that fails; None: none does."""
+        code, output = run(["ctest", "--test-dir", "build/test", "-L", "fast", "-j", self.jobs, "--stop-on-failure",
+                            "--no-tests=ignore", "--output-on-failure"] + select, self.source, LIMIT)
+        if code == 0:
+            return None
+        # A share of a program's tests is one test to ctest.
+        names = re.findall(r"^\[  FAILED  \] (\S+?)(?:,| \(|$)", output, re.M)
+        tests = re.findall(r"^\s+\d+ - (\S+) \((?!Not Run|Disabled)", output, re.M) or re.findall(
+            r"Test +#\d+: (\S+) \.*\*\*\*", output)
+        if not tests:
+            return "no end within the limit" if code == 124 else "ctest itself: " + output[-300:]
+        return f"{tests[0]} {names[0]}" if "share_" in tests[0] and names else tests[0]
+
+
+def room_of(path, targets):
+    """Name of the folder of its tests, and the target that they need."""
+    parts = path.split("/")
+    if parts[0] != "montelux":
+        return parts[0], None
+    for depth in (3, 2):
+        room = "/".join(parts[1:depth])
+        target = room.replace("/", "_") + "_test"
+        if target in targets:
+            return room, target
+    return parts[1], None
+
+
+def try_mutant(copy, patch):
+    """What notices it, and the mistake's sentence."""
+    sentence = patch.read_text().split("\n", 1)[0]
+    touched = re.findall(r"^\+\+\+ b/(\S+)", patch.read_text(), re.M)
+    code, output = run(["patch", "-p1", "--forward", "--no-backup-if-mismatch", "--reject-file=-", "-i", str(patch)],
+                       copy.source)
+    if code != 0:
+        return "does not apply: " + output.strip(), sentence
+    room, target = room_of(touched[0], copy.targets)
+    own, sanitized = f"^{re.escape(room)}/", f"^sanitized/{re.escape(room)}/"
+    stages = [(target, ["-R", own]), (None, ["-E", f"{own}|{sanitized}"])]
+    if f"{target}_sanitized" in copy.targets:
+        stages.insert(1, (f"{target}_sanitized", ["-R", sanitized]))
+    for wanted, select in stages:
+        if failure := copy.build(wanted):
+            # What is generated by running the program is built by it.
+            if "error:" in failure:
+                return "does not compile: " + "\n".join(re.findall(r".*error:.*", failure)[:3]), sentence
+            return "the build, which runs what it has built", sentence
+        if test := copy.failed_test(select):
+            return test, sentence
+    return None, sentence
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.split("\n", 1)[0])
+    parser.add_argument("--folder", type=pathlib.Path, default=ROOT / "build" / "mutants", help="of the copy and its builds")
+    parser.add_argument("--jobs", type=int, default=2)
+    parser.add_argument("--only", default="", help="parts of names, with commas")
+    parser.add_argument("--json", type=pathlib.Path, help="results; what it has already is not run again")
+    options = parser.parse_args()
+    patches = sorted(p for p in MUTANTS.glob("*/*.patch")
+                     if not options.only or any(o in str(p) for o in options.only.split(",")))
+    if not patches:
+        sys.exit("no such mutant")
+    results = json.loads(options.json.read_text()) if options.json and options.json.exists() else {}
+    copy = Copy(options.folder, options.jobs)
+    if output := copy.build():
+        sys.exit("the sources do not compile without any mutant:\n" + output[-4000:])
+    for patch in patches:
+        name = f"{patch.parent.name}/{patch.stem}"
+        if name in results:
+            continue
+        begin = time.monotonic()
+        try:
+            noticed, sentence = try_mutant(copy, patch)
+        finally:
+            copy.refresh()
+        results[name] = {"mistake": sentence, "noticed_by": noticed, "seconds": round(time.monotonic() - begin)}
+        print(f"{name}: {noticed or 'SURVIVES'} ({results[name]['seconds']} s)", flush=True)
+        if options.json:
+            options.json.write_text(json.dumps(results, indent=1) + "\n")
+    mine = {n: r for n, r in results.items() if any(n == f"{p.parent.name}/{p.stem}" for p in patches)}
+    broken = [n for n, r in mine.items() if (r["noticed_by"] or "").startswith("does not")]
+    alive = [n for n, r in mine.items() if r["noticed_by"] is None]
+    for n in broken + alive:
+        print(f"{n}: {mine[n]['noticed_by'] or 'survives: ' + mine[n]['mistake']}")
+    print(f"{len(mine) - len(alive) - len(broken)} of {len(mine)} mutants noticed, {len(alive)} survive, {len(broken)} broken")
+    return 1 if alive or broken else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
