@@ -13,6 +13,8 @@
 namespace montelux {
 
 struct ThreadLimit::Control {
+    explicit Control(int threads)
+        : control(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)) {}
     tbb::global_control control;
 };
 
@@ -20,9 +22,7 @@ ThreadLimit::ThreadLimit(int threads) {
     if (threads < 0 || threads > most_threads)
         throw Error("threads", "expected a number from 0 to " + std::to_string(most_threads) + ", got " +
                                    std::to_string(threads));
-    if (threads > 0)
-        control_.reset(new Control{tbb::global_control(tbb::global_control::max_allowed_parallelism,
-                                                       static_cast<std::size_t>(threads))});
+    if (threads > 0) control_ = std::make_unique<Control>(threads);
 }
 
 ThreadLimit::~ThreadLimit() = default;
