@@ -51,7 +51,7 @@ if(MONTELUX_LTO)
     endif()
 endif()
 
-# Code that runs seldom: what an optimiser wins there is not worth the wait for it.
+# Code outside of the sampling loop: a higher level would take longer to compile than it saves.
 set(MONTELUX_COLD_FLAGS $<$<CONFIG:Release>:-O1>)
 
 find_program(MONTELUX_CCACHE ccache)

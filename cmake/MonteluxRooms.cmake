@@ -1,7 +1,7 @@
 # One CMake target per room, and the libraries made of rooms.
 
 # montelux_room(path/of/room [COLD] [USES rooms...] [LINKS libraries...] [INCLUDES directories...])
-# Compiles montelux/<room>/**.cpp; its unit tests are test/<room>/**_test.cpp. COLD: nothing in it runs once a sample.
+# Compiles montelux/<room>/**.cpp; its unit tests are test/<room>/**_test.cpp. COLD: no code of the sampling loop.
 function(montelux_room room)
     cmake_parse_arguments(ARG "COLD" "" "USES;LINKS;INCLUDES" ${ARGN})
     string(REPLACE "/" "_" name "montelux_room_${room}")

@@ -8,7 +8,7 @@
 
 namespace montelux {
 
-// That of lanes is in spectrum_lanes.h.
+// The specialisation for lanes is in spectrum_lanes.h.
 template <typename T>
 struct SpectrumTraits;
 template <std::floating_point T>

@@ -47,7 +47,7 @@ using DisneySheetBsdf = DisneyBsdf<DisneySheet, true>;
 template <typename Base, typename Coat = DielectricBsdf>
 struct LayeredBsdf;
 
-// What materials make, and what a tilted normal makes of them.
+// All BSDFs of materials, and Others.
 template <typename... Others>
 using BsdfVariant =
     std::variant<DiffuseBsdf, DiffuseTransmissionBsdf, ConductorBsdf, DielectricBsdf, ThinDielectricBsdf,

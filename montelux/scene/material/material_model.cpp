@@ -10,7 +10,7 @@ namespace montelux {
 
 namespace {
 
-// What a material has.
+// A material: its name, its parameters and its BSDF.
 template <typename M>
 concept MaterialModel = requires(const M& m, M& changed, const ParameterEvaluator& at) {
     { M::name } -> std::convertible_to<const char*>; // in Python; pbrt's files use small letters
