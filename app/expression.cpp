@@ -18,7 +18,7 @@
 namespace montelux::app {
 namespace {
 
-constexpr std::array<std::pair<const char*, double>, 4> constants{
+constexpr std::array<std::pair<const char*, double>, 4> mathematical_constants{
     {{"pi", std::numbers::pi},
      {"e", std::numbers::e},
      {"inf", std::numeric_limits<double>::infinity()},
@@ -49,7 +49,7 @@ mu::Parser make_parser(const std::vector<std::string>& variables, const NamedCon
     static const bool once = (parser.ResetLocale(), true);
     static_cast<void>(once);
     define_functions([&](const char* name, auto function) { parser.DefineFun(name, +function); });
-    for (const auto& [name, value] : constants)
+    for (const auto& [name, value] : mathematical_constants)
         if (std::find(variables.begin(), variables.end(), name) == variables.end())
             parser.DefineConst(name, value);
     for (const auto& [name, value] : given) parser.DefineConst(name, value);

@@ -18,26 +18,26 @@ namespace montelux::app {
 namespace {
 
 // A line of a table: an area of the format, a feature of it, how much of that is read.
-struct Line {
+struct FormatLine {
     std::string area, feature;
     Support support = Support::full;
     std::string note;
 };
 
-std::vector<Line> pbrt_lines() {
-    std::vector<Line> lines;
+std::vector<FormatLine> pbrt_lines() {
+    std::vector<FormatLine> lines;
     for (const pbrt::PluginCoverage& p : pbrt::plugin_coverage())
         lines.push_back({std::string(p.directive), p.plugin, p.support, std::string(p.note)});
     return lines;
 }
-std::vector<Line> gltf_lines() {
-    std::vector<Line> lines;
+std::vector<FormatLine> gltf_lines() {
+    std::vector<FormatLine> lines;
     for (const gltf::FeatureCoverage& f : gltf::feature_coverage())
         lines.push_back({std::string(f.area), std::string(f.feature), f.support, std::string(f.note)});
     return lines;
 }
-std::vector<Line> mitsuba_lines() {
-    std::vector<Line> lines;
+std::vector<FormatLine> mitsuba_lines() {
+    std::vector<FormatLine> lines;
     for (const mitsuba::PluginCoverage& p : mitsuba::plugin_coverage())
         lines.push_back({std::string(p.kind), std::string(p.plugin), p.support, std::string(p.note)});
     return lines;
@@ -45,7 +45,7 @@ std::vector<Line> mitsuba_lines() {
 
 struct Table {
     const char *name, *help, *area, *feature; // the latter two: keys of the JSON
-    std::vector<Line> (*lines)();
+    std::vector<FormatLine> (*lines)();
 };
 constexpr Table tables[] = {
     {"pbrt", "The plugins of pbrt-v4's scene files, directive by directive", "directive", "plugin",
@@ -54,14 +54,14 @@ constexpr Table tables[] = {
     {"mitsuba", "The plugins of Mitsuba 3, kind by kind", "kind", "plugin", mitsuba_lines},
 };
 
-void print(const std::vector<Line>& lines) {
+void print(const std::vector<FormatLine>& lines) {
     std::size_t area_width = 0, feature_width = 0;
-    for (const Line& line : lines) {
+    for (const FormatLine& line : lines) {
         area_width = std::max(area_width, line.area.size());
         feature_width = std::max(feature_width, line.feature.size());
     }
     std::string area;
-    for (const Line& line : lines) {
+    for (const FormatLine& line : lines) {
         const std::string_view support = name_of(line.support);
         std::printf("%-*s %-*s %.*s", static_cast<int>(area_width),
                     line.area == area ? "" : line.area.c_str(), static_cast<int>(feature_width),
@@ -74,7 +74,7 @@ void print(const std::vector<Line>& lines) {
 
 void print_json(const Table& table) {
     nlohmann::ordered_json all = nlohmann::ordered_json::array();
-    for (const Line& line : table.lines())
+    for (const FormatLine& line : table.lines())
         all.push_back({{table.area, line.area},
                        {table.feature, line.feature},
                        {"support", name_of(line.support)},

@@ -1,20 +1,11 @@
 // under_sanitizers: whether the address sanitizer slows the tests down and reserves terabytes.
 #pragma once
 
-#if defined(__SANITIZE_ADDRESS__)
-#define MONTELUX_ADDRESS_SANITIZER 1
-#elif defined(__has_feature)
-#if __has_feature(address_sanitizer)
-#define MONTELUX_ADDRESS_SANITIZER 1
-#endif
-#endif
+extern "C" void __asan_init() __attribute__((weak)); // of its library
 
 namespace montelux {
 
-#if defined(MONTELUX_ADDRESS_SANITIZER)
-inline constexpr bool under_sanitizers = true;
-#else
-inline constexpr bool under_sanitizers = false;
-#endif
+// Known when a program is linked: the same object of a test is linked with plain and with sanitized code.
+inline const bool under_sanitizers = __asan_init != nullptr;
 
 } // namespace montelux

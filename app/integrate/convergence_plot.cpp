@@ -106,9 +106,9 @@ std::vector<Tick> linear_ticks(double low, double high) {
 
 constexpr double width = 720, left = 110, right = 700;
 
-class Picture {
+class Svg {
   public:
-    Picture() {
+    Svg() {
         svg_ = text(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%g\" height=\"640\" viewBox=\"0 0 %g 640\" "
             "font-family=\"sans-serif\" font-size=\"12\">\n<rect width=\"100%%\" height=\"100%%\" "
@@ -191,7 +191,7 @@ std::vector<IterationRecord> drawable(const IntegrationResult& result) {
     return records;
 }
 
-void draw_value(Picture& picture, const std::vector<IterationRecord>& records, const Axis& x,
+void draw_value(Svg& picture, const std::vector<IterationRecord>& records, const Axis& x,
                 const std::vector<Tick>& x_ticks) {
     // The later part sets the scale: the first steps may be far off.
     double low = INFINITY, high = -INFINITY;
@@ -221,7 +221,7 @@ void draw_value(Picture& picture, const std::vector<IterationRecord>& records, c
     picture.vertical_label(22, 182, "value");
 }
 
-void draw_error(Picture& picture, const std::vector<IterationRecord>& records, const Axis& x,
+void draw_error(Svg& picture, const std::vector<IterationRecord>& records, const Axis& x,
                 const std::vector<Tick>& x_ticks, bool statistical) {
     std::vector<IterationRecord> positive;
     for (const IterationRecord& r : records)
@@ -255,7 +255,7 @@ void draw_error(Picture& picture, const std::vector<IterationRecord>& records, c
 } // namespace
 
 std::string convergence_svg(const std::string& title, const IntegrationResult& result) {
-    Picture picture;
+    Svg picture;
     const std::vector<IterationRecord> records = drawable(result);
     picture.label(left, 24, escaped(title), "font-size=\"14\"");
     if (records.empty()) {

@@ -59,7 +59,7 @@ TEST(Curves, RaysMeetTheNearestSegment) {
     Draws draws(22);
     std::array<int, 4> hits{};
     int on_instances = 0, other = 0;
-    constexpr int rays = under_sanitizers ? 1000 : 4000;
+    const int rays = under_sanitizers ? 1000 : 4000;
     for (int i = 0; i < rays; ++i) {
         Ray ray;
         ray.o = draws.in_cube(3);

@@ -40,7 +40,7 @@ TEST(Layers, AreThoseOfSinglePathsBitForBit) {
     for (const SceneBuilder& scene : {layered_scene(), foggy_scene()})
         for (const Strategy strategy : {Strategy::mis, Strategy::bsdf, Strategy::light}) {
             SceneBuilder b = scene;
-            constexpr std::uint32_t spp = under_sanitizers ? 2 : 8;
+            const std::uint32_t spp = under_sanitizers ? 2 : 8;
             b.description.sampler = {.kind = SamplerKind::independent, .spp = spp};
             b.description.integrator.strategy = strategy;
             b.description.film.filter = MitchellFilter{};

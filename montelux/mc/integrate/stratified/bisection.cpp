@@ -11,7 +11,7 @@
 namespace montelux {
 namespace {
 
-constexpr double least_share = 0.1; // of a half
+constexpr double least_share_of_samples = 0.1; // of a half
 constexpr std::uint64_t most_numbers_kept = std::uint64_t{1} << 24;
 
 // A box, its pilot points (point by point: coordinates, then values), and the samples that it may spend.
@@ -152,7 +152,7 @@ class Bisector {
         }
         if (best == d_) return;
         double share = best_sum > 0 ? best_lower / (best_lower + best_upper) : 0.5;
-        share = std::clamp(share, least_share, 1 - least_share);
+        share = std::clamp(share, least_share_of_samples, 1 - least_share_of_samples);
 
         Node lower, upper;
         lower.lower = node.lower;
