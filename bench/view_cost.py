@@ -68,7 +68,7 @@ class Attacks(threading.Thread):
 
     def __init__(self, url: str, connections: int):
         super().__init__(daemon=True)
-        self.command = [sys.executable, str(client), url, "hostile", str(connections)]
+        self.command = [sys.executable, str(client), url, str(connections)]
         self.process: subprocess.Popen | None = None
         self.ends = False
         self.whole = 0

@@ -1,7 +1,6 @@
-"""A client of the viewer by the standard library alone, and a stand-in for tev; used by view_test.sh.
+"""A client of the viewer by the standard library alone, and attacks on it; used by view_test.py and bench/view_cost.py.
 
-Usage: view_client.py URL SCRIPT [FILE or COUNT]   SCRIPT: final, controls, orbit, lights, hostile
-       view_client.py tev PORT FILE.npz-free text summary
+Usage: view_client.py URL [CONNECTIONS]   attacks
 """
 
 import base64
@@ -120,106 +119,8 @@ class Picture:
         assert at == len(message)
 
 
-def ended(viewer):
-    return viewer.next("progress", lambda p: p["state"] == "ended")
-
-
-def final(viewer, path):
-    """Watches a render until it has ended; saves its picture, and checks the tiles against it."""
-    scene = viewer.next("scene")
-    viewer.ask(type="show", layers=["mean", "error", "samples"])
-    picture = Picture(scene)
-    errors, state, tiles = [], None, 0
-    while state != "ended":
-        message = viewer.message()
-        if isinstance(message, bytes):
-            picture.add(message)
-            tiles += 1
-        elif message["type"] == "progress":
-            state = message["state"]
-            if message["error"] is not None:
-                errors.append(message["error"])
-    pixels = scene["width"] * scene["height"]
-    deadline = time.monotonic() + 20
-    while time.monotonic() < deadline:  # the last tiles
-        if all(len(picture.layers[i]) == pixels for i in (0, 1, 3)) and all(
-                v == (scene["spp"],) for v in picture.layers[3].values()):
-            break
-        message = viewer.message()
-        if isinstance(message, bytes):
-            picture.add(message)
-    assert all(len(picture.layers[i]) == pixels for i in (0, 1, 3)), [len(layer) for layer in picture.layers]
-    assert errors == sorted(errors, reverse=True) or errors[-1] < errors[0], errors
-    with open(path, "wb") as file:
-        file.write(viewer.get("/picture.exr"))
-    viewer.ask(type="pixel", x=1, y=1)
-    pixel = viewer.next("pixel")
-    for shown, exact in zip(picture.layers[0][1, 1], pixel["mean"]):
-        assert abs(shown - exact) <= 1e-3 * abs(exact) + 1e-6, (shown, exact)
-    print(f"{tiles} messages of tiles, {len(errors)} errors")
-
-
-def controls(viewer, path):
-    viewer.next("scene")
-    viewer.next("progress", lambda p: p["state"] == "rendering")
-    viewer.ask(type="pause")
-    paused = viewer.next("progress", lambda p: p["state"] == "paused")
-    time.sleep(1)
-    viewer.ask(type="resume")
-    resumed = viewer.next("progress", lambda p: p["state"] == "rendering")
-    assert resumed["seconds"] - paused["seconds"] < 0.8, (paused["seconds"], resumed["seconds"])
-    viewer.ask(type="replay", x=3, y=2, sample=1)
-    lines = viewer.next("replay")["lines"]
-    assert any(line["text"].startswith("vertex 1") for line in lines), lines
-    viewer.ask(type="target", error=0.5, time=None)
-    last = ended(viewer)
-    assert last["ended_by"] == "error" and last["error"] <= 0.5, last
-    print("ok")
-
-
-def orbit(viewer, path):
-    first = viewer.next("scene")
-    assert first["can_orbit"]
-    viewer.ask(type="orbit", azimuth=40, elevation=10, zoom=1)
-    second = viewer.next("scene")
-    assert second["epoch"] == first["epoch"] + 1
-    viewer.ask(type="show", layers=["mean"])
-    ended(viewer)
-    print("ok")
-
-
-def lights(viewer, path):
-    first = viewer.next("scene")
-    assert first["lights"] == [] and first["can_group_lights"]
-    viewer.ask(type="light groups", on=True)
-    second = viewer.next("scene", lambda s: s["epoch"] > first["epoch"])
-    assert len(second["lights"]) == 2, second["lights"]
-    names = ["light " + name for name in second["lights"]]
-    viewer.ask(type="show", layers=["mean"] + names)
-    picture, state = Picture(second), None
-    indices = [[layer["name"] for layer in second["layers"]].index(name) for name in names]
-
-    def disagreement():
-        for place, mean in picture.layers[0].items():
-            for c in range(3):
-                total = sum(picture.layers[i][place][c] for i in indices if place in picture.layers[i])
-                if abs(total - mean[c]) > 4e-3 * abs(mean[c]) + 1e-4:
-                    return place, total, mean
-        return None if len(picture.layers[0]) == second["width"] * second["height"] else "tiles are missing"
-
-    deadline = time.monotonic() + 60
-    while state != "ended" or disagreement():  # until the last tiles
-        assert time.monotonic() < deadline, disagreement()
-        message = viewer.message()
-        if isinstance(message, bytes):
-            picture.add(message)
-        elif message["type"] == "progress":
-            state = message["state"]
-    print("ok")
-
-
 def patient_viewer(url):
-    """As Viewer. While attacks fill the program's connections, a new one is closed if its request comes a moment after
+    """A Viewer. While attacks fill the program's connections, a new one is closed if its request comes a moment after
     it: then it is opened again, as by a person who reloads the page."""
     for _ in range(20):
         try:
@@ -229,9 +130,8 @@ def patient_viewer(url):
     return Viewer(url)
 
 
-def hostile(viewer, count):
-    """Attacks by `count` connections, by default 10,000; then one page is served as if nothing were."""
-    count = int(count or 10000)
+def hostile(viewer, count=10000):
+    """Attacks by `count` connections; then one page is served as if nothing were."""
     address = (viewer.host, viewer.port)
     host = f"Host: {viewer.host}:{viewer.port}\r\n"
     silent, opened = [], 0
@@ -264,52 +164,7 @@ def hostile(viewer, count):
     time.sleep(2)
     viewer.ask(type="pixel", x=1, y=1)
     viewer.next("pixel")
-    print(f"{opened} connections")
-
-
-def tev(port):
-    """Listens as tev does; prints the operations, and how many pixels of which channels it has in the end."""
-    listener = socket.create_server(("127.0.0.1", port))
-    print("listening", flush=True)
-    connection, _ = listener.accept()
-    data = b""
-    operations, pixels, size = [], {}, None
-    while True:
-        while len(data) < 4 or len(data) < struct.unpack_from("<I", data)[0]:
-            chunk = connection.recv(1 << 20)
-            if not chunk:
-                values = list(pixels.values())
-                finite = all(v == v for v in values)
-                print(f"{operations[:2]} {size} {len(values)} finite={finite} sum={sum(values):.6g}")
-                return
-            data += chunk
-        (length,) = struct.unpack_from("<I", data)
-        packet, data = data[4:length], data[length:]
-        operation = packet[0]
-        if len(operations) < 2:
-            operations.append(operation)
-        texts = lambda at, n: (lambda parts: ([p.decode() for p in parts[:n]], at + sum(len(p) + 1 for p in parts[:n])))(
-            packet[at:].split(b"\0", n))
-        if operation == 4:
-            _, at = texts(2, 1)
-            width, height, count = struct.unpack_from("<3i", packet, at)
-            names, _ = texts(at + 12, count)
-            size = (width, height, ",".join(names))
-        if operation == 6:
-            _, at = texts(2, 1)
-            (count,) = struct.unpack_from("<i", packet, at)
-            names, at = texts(at + 4, count)
-            x, y, width, height = struct.unpack_from("<4i", packet, at)
-            places = struct.unpack_from("<%dq" % (2 * count), packet, at + 16)
-            at += 16 + 16 * count
-            values = struct.unpack_from("<%df" % ((len(packet) - at) // 4), packet, at)
-            for c, name in enumerate(names):
-                for i in range(width * height):
-                    pixels[name, x + i % width, y + i // width] = values[places[c] + i * places[count + c]]
 
 
 if __name__ == "__main__":
-    if sys.argv[1] == "tev":
-        tev(int(sys.argv[2]))
-    else:
-        globals()[sys.argv[2]](Viewer(sys.argv[1]), sys.argv[3] if len(sys.argv) > 3 else None)
+    hostile(Viewer(sys.argv[1]), *map(int, sys.argv[2:]))
