@@ -1,0 +1,78 @@
+"""Progress: a bar on a terminal, which fits and counts towards what ends the render, and lines elsewhere."""
+
+import re
+
+from program import SKY, ProgramTest, scene
+
+CONTENT = f"""{SKY} LightSource "point" "rgb I" [9 9 9] "point3 from" [0 0.9 1.2] Material "diffuse"
+Shape "sphere" Translate 1 0 0 Shape "sphere\""""
+
+
+class Progress(ProgramTest):
+    @classmethod
+    def prepare(cls):
+        scene("lit", CONTENT, 480, 360)
+        scene("small", CONTENT, 200, 150)
+        scene("large", CONTENT, 1200, 900)
+        scene("short", f'{SKY} Shape "sphere"')
+
+    def drawn(self, line, columns=80):
+        """Pictures of the line of progress, all of which leave the last column free."""
+        outcome = self.on_terminal(line, columns)
+        self.assertEqual(outcome.code, 0, outcome)
+        lines = [text.replace("\x1b[K", "") for text in re.split("[\r\n]+", outcome.text)]
+        lines = [text for text in lines if re.search("[0-9] %  ", text)]
+        self.assertTrue(lines, f"no progress: {outcome}")
+        self.assertLess(max(map(len, lines)), columns, lines)
+        return lines
+
+    def test_time_that_is_left_is_of_the_limit(self):
+        """The number of samples has nothing to do with it."""
+        for columns in 80, 40:
+            with self.subTest(columns=columns):
+                lines = self.drawn("render lit.pbrt --time 1 -o x.exr", columns)
+                left = [line for line in lines if " left" in line]
+                self.assertTrue(left, lines)
+                for line in left:
+                    self.assertLessEqual(float(re.search(r"([0-9.]+) s left", line)[1]), 1.25, line)
+                self.assertIn("100 %", lines[-1])
+
+    def test_no_hours_are_left_while_the_error_is_not_known(self):
+        for columns in 80, 40:
+            with self.subTest(columns=columns):
+                for line in self.drawn("render lit.pbrt --target-error 30% -o x.exr", columns):
+                    self.assertNotRegex(line, "[0-9]+:[0-9]+:[0-9]+ left")
+
+    def test_bar_of_80_columns(self):
+        lines = self.drawn("render lit.pbrt --spp 8 -o x.exr")
+        self.assertTrue(any("100 %" in line for line in lines), lines)
+        self.assertTrue(any(re.search(r"\[#+\.*\] +[0-9]+ %", line) for line in lines), lines)
+
+    def test_times_on_40_columns(self):
+        lines = self.drawn("render lit.pbrt --spp 8 -o x.exr", 40)
+        self.assertTrue(any("100 %" in line for line in lines), lines)
+        self.assertTrue(any("elapsed" in line or "left" in line for line in lines), lines)
+
+    def test_bar_says_all_of_a_short_render(self):
+        text = self.on_terminal("render short.pbrt").text
+        for part in "[####", "100 %", "elapsed", "samples/s", "error":
+            self.assertIn(part, text)
+
+    def test_lines_where_there_is_no_terminal(self):
+        self.expect(0, "rendering: 100 %", "render short.pbrt")
+
+    def test_bar_is_not_full_while_the_target_is_open(self):
+        lines = self.drawn("render small.pbrt --target-error 7% -o x.exr")
+        full = [line for line in lines if "100 %" in line and " error " in line]
+        for line in full:
+            self.assertLessEqual(float(re.search(r".* error ([0-9.]+)", line)[1]), 7, line)
+
+    def test_integral_shows_its_value(self):
+        outcome = self.on_terminal("integrate x --over x=0:1 --method basic --relative-error 1e-9 --time 0.5")
+        self.assertIn("evaluations, 0.", outcome.text)
+
+    def test_render_that_is_interrupted_in_its_pilot_has_seen_every_pixel(self):
+        job = self.start("render large.pbrt --target-error 0.1% -o early.exr")
+        self.interrupted(job, works=5)
+        info = self.output("info early.exr")
+        self.assertGreaterEqual(float(re.search(r"^samples +(\S+)", info, re.M)[1]), 1, info)
