@@ -1,0 +1,71 @@
+"""Integrals on which methods were confidently wrong: each result is within four of its errors of the truth, or comes
+with a warning or with exit code 3."""
+
+import itertools
+import json
+
+from program import ProgramTest
+
+# Peaks of which the first points see a few; a curved ridge; a thin ring.
+EGGBOX = "exp((2+cos(x/2)*cos(y/2))^5)"
+ROSENBROCK = "exp(-(1-x)^2-100*(y-x^2)^2)"
+RING = "exp(-(hypot(x,y)-0.7)^2/(2*0.005^2))"
+
+
+class HardIntegrals(ProgramTest):
+    def result(self, line, seconds=60):
+        """(outcome, result of the JSON)."""
+        outcome = self.outcome(f"integrate {line} --json --quiet", seconds=seconds, apart=True)
+        self.assertIn(outcome.code, (0, 3), outcome)
+        return outcome, json.loads(outcome.text)
+
+    def honest(self, truth, line):
+        with self.subTest(line):
+            outcome, result = self.result(line)
+            error = result["standard_error"]
+            if outcome.code == 3 or result["warnings"] or error is None:  # nothing is claimed
+                return
+            self.assert_near(result["value"], truth, 4 * error, outcome)
+
+    def test_few_of_the_peaks_are_seen_at_first(self):
+        methods = "auto", "cubature", "adaptive", "vegas"
+        for method, seed, error in itertools.product(methods, (0, 1, 2), ("1e-2", "1e-3")):
+            if method in ("cubature", "vegas") and seed != 0:
+                continue
+            limits = f"--relative-error {error} --evaluations 2M --method {method} --seed {seed}"
+            if seed == 0:  # of 25 peaks adaptive makes a density that takes seconds
+                self.honest(2.66215388294e105, f"{EGGBOX} --over x,y=0:10*pi {limits}")
+            self.honest(0.30150696021, f"{ROSENBROCK} --over x,y=-5:5 {limits}")
+            self.honest(0.05512363481, f"{RING} --over x,y=-1.3:1.3 {limits}")
+
+    def test_unit_of_the_integrand(self):
+        """pi^2 / 2 is the volume of the unit ball in four dimensions."""
+        for unit in "1e-300", "1e-170", "1", "1e160", "1e300":
+            for method in "auto", "adaptive", "vegas", "quasi", "basic":
+                self.honest(float("4.934802200544679" + unit[1:]), f"{unit}*(x^2+y^2+z^2+u^2<1) --over x,y,z,u=-1:1"
+                            f" --relative-error 1e-2 --evaluations 3M --method {method}")  # fmt: skip
+
+    def test_gaussians_whose_squares_no_double_holds(self):
+        for method, seed in itertools.product(("auto", "adaptive", "vegas", "basic"), (0, 1)):
+            limits = f"--over x,y=-inf:inf --relative-error 1e-2 --evaluations 1M --method {method} --seed {seed}"
+            self.honest(6.283185307179586e-200, f"1e-200*exp(-(x^2+y^2)/2) {limits}")
+            self.honest(8.6646126941712473e-163, f"exp(-375-(x^2+y^2)/2) {limits}")
+
+    def test_error_of_equal_values_is_not_zero(self):
+        """Features that are rarely hit."""
+        for method in "basic", "quasi", "stratified", "vegas":
+            self.honest(0.999879, f"x>0.000121 --over x=0:1 --method {method} --evaluations 2000")
+
+    def test_target_below_rounding_ends_at_once_with_the_best_value(self):
+        for truth, tolerance, line in [
+            (0.45969769413186028, 1e-15, "sin(x) --over x=0:1 --relative-error 1e-16"),
+            (0.45969769413186028, 1e-15, "sin(x) --over x=0:1 --absolute-error 1e-30"),
+            (1.7182818284590452, 4e-15, "exp(x) --over x=0:1 --relative-error 1e-16"),
+        ]:
+            with self.subTest(line):
+                outcome, result = self.result(line, seconds=20)
+                self.assert_near(result["value"], truth, tolerance, outcome)
+                self.assertLessEqual(result["evaluations"], 100000)
+
+    def test_time_limit_holds_where_an_integrand_takes_millions_of_regions(self):
+        self.outcome(f"integrate {RING} --over x,y=-1.3:1.3 --relative-error 1e-12 --time 2 --quiet", seconds=10)
