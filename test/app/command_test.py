@@ -62,7 +62,7 @@ COMPLETIONS = [
     ("render scene.pbrt --tone ''", "linear srgb aces agx filmic"),
     ("render --tone a", "aces agx"),
     ("render --tone=a", "--tone=aces --tone=agx"),
-    ("render --tone = a", "aces agx"),  # as bash splits it
+    ("render --tone = a", "aces agx"),  # bash splits it so
     ("render --tone =", "linear srgb aces agx filmic"),
     ("render --adaptive ''", "on off"),
     ("render --layers position,de", "position,default position,depth position,depth-slopes"),

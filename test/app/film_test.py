@@ -110,7 +110,7 @@ alpha,direct,indirect,light-groups,shape,material --layer-space camera -o all.ex
         0 32-bit float $ info wide.exr
         0 values beyond the range of 16-bit floats became 65504 $ render bright.pbrt --layers mean --half -o bright.exr
     """)
-    # In camera space unless the film says otherwise.
+    # Camera space, unless the film says otherwise.
     test_film_of_pbrt_has_layers = steps("""
         0 $ render gbuffer.pbrt -o g.exr
         0 P.Z & Ng.X & dzdy & uv.V & variance.G & "layerSpace" = "camera" $ info g.exr
@@ -171,7 +171,7 @@ class Slices(ProgramTest):
         return [float(value) for row in rows for value in row]
 
     def test_fireflies_are_found_from_the_replicates_of_all_slices(self):
-        """Also where each slice has a single one."""
+        """Replicates of slices that have a single one, too."""
         scene("lamp", f"""{SKY} Material "diffuse" Shape "sphere" AttributeBegin
 AreaLightSource "diffuse" "rgb L" [500 500 500]
 Translate 1.1 0.6 0 Shape "sphere" "float radius" 0.008 AttributeEnd""", 16, 12)

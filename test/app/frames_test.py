@@ -38,7 +38,7 @@ class Animations(FramesTest):
         cls.expect(0, "still.pfm", f"{cls.STILL} -o still.pfm")
 
     def test_frames_have_numbers_and_show_motion(self):
-        """Under the camera of the whole animation."""
+        """The camera is that of the whole animation."""
         self.expect(0, "out.0003.png, out.0003.pfm: 32 x 24 pixels",
                     f"render moving.gltf {SMALL} --frames 1-5x2 --frame-rate 2 -o out.png -o out.pfm")  # fmt: skip
         self.assertEqual(sorted(str(path) for path in Path().glob("out.0*.p*")),
@@ -51,7 +51,7 @@ class Animations(FramesTest):
         still.pfm == film.0004.pfm
         0 the animation ends at 2 s; frame 60 and those behind it show its end $ {FRAMED} --frames 60 -o film.pfm
     """)
-    # None, seconds, and an angle of the time of a frame.
+    # Shutters: none, seconds, and an angle of the time of a frame.
     test_shutter = steps(f"""
         0 none.pfm $ {STILL} --shutter 0 -o none.pfm
         still.pfm == none.pfm
@@ -65,7 +65,7 @@ class Animations(FramesTest):
 
 
 class FinishedFrames(FramesTest):
-    """They are skipped: of these settings, and with these bytes."""
+    """Frames of these settings, and with these bytes, are skipped."""
 
     LINE = f"render moving.gltf {SMALL} --frames 2"
 

@@ -33,7 +33,7 @@ class HardIntegrals(ProgramTest):
             if method in ("cubature", "vegas") and seed != 0:
                 continue
             limits = f"--relative-error {error} --evaluations 2M --method {method} --seed {seed}"
-            if seed == 0:  # of 25 peaks adaptive makes a density that takes seconds
+            if seed == 0:  # adaptive makes a density of 25 peaks that takes seconds
                 self.honest(2.66215388294e105, f"{EGGBOX} --over x,y=0:10*pi {limits}")
             self.honest(0.30150696021, f"{ROSENBROCK} --over x,y=-5:5 {limits}")
             self.honest(0.05512363481, f"{RING} --over x,y=-1.3:1.3 {limits}")

@@ -5,7 +5,7 @@ import re
 from program import ProgramTest, write
 
 FEW, MANY = 16, 16384
-SIZE = 2048  # of the sky; fluctuations of the page count are below the tolerance for a picture of this size
+SIZE = 2048  # sky; fluctuations of the page count are below the tolerance for a picture of this size
 TOLERANCE = 1.01
 
 

@@ -137,5 +137,5 @@ exec ip netns exec {NAME}-$k unshare --uts sh -c "hostname {NAME}-$k; $*"
         self.check("--spp 2000 --adaptive on", False)
 
     def test_host_of_which_nothing_is_heard(self):
-        """It works on."""
+        """The host works on."""
         self.check("--spp 256 --integrator bidirectional", True)

@@ -93,7 +93,7 @@ class Mistakes(MpiTest):
                 self.assert_once(self.ranks(3, line, before=late), alone.code, alone.text.splitlines()[0])
 
     def test_mistake_that_rank_1_alone_finds(self):
-        """It finds it when it builds the scene."""
+        """The rank finds it when it builds the scene."""
         other = ["sh", "-c", f'[ "$OMPI_COMM_WORLD_RANK" != 1 ] || set -- "$@" {EMPTY_CROP}; exec "$@"', "-"]
         outcome = self.ranks(3, "render ball.pbrt --spp 40 -o alone.exr", before=other)
         self.assert_once(outcome, 1, "montelux: error: rank 1: ")

@@ -193,7 +193,7 @@ class DenoiserMissing(ProgramTest):
     """)
 
     def test_error_comes_before_the_render(self):
-        """It would take hours."""
+        """The render would take hours."""
         write("text.so", "text\n")
         no_function = "this is not Open Image Denoise 1.4 or newer: it has no function oidnNewDevice"
         for library, text in ("no.so", "cannot be loaded"), ("text.so", "cannot be loaded"), ("libm.so.6", no_function):
@@ -230,7 +230,7 @@ class Denoiser(ProgramTest):
         channels = r"R|G|B|stderr\.[RGB]|albedo\.[RGB]|N\.[XYZ]|samples"
         self.assertEqual(self.rows("both.exr", channels), self.rows("ok.exr", channels))
 
-    # They show that of the command denoise too, on any number of threads.
+    # The picture of the command denoise is the same, on any number of threads.
     test_other_formats_show_the_denoised_picture = steps("""
         0 with albedo and normal $ denoise ok.exr -o later.pfm -o later.png -o later.exr --threads 1
         both.pfm == later.pfm

@@ -225,7 +225,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def expect(cls, code, text, line, *words, **how):
-        """What the program prints: the text, or all of TEXT & TEXT ..., and one error message if the code is 1."""
+        """Output of the program: has the text, or all of TEXT & TEXT ..., and one error message if the code is 1."""
         outcome = cls.outcome(line, *words, **how)
         printed = outcome.text + outcome.errors
         if outcome.code != code:
@@ -305,7 +305,7 @@ class ProgramTest(unittest.TestCase):
         return value
 
     def interrupted(self, job, number=signal.SIGINT, works=0.4, seconds=INFINITE):
-        """What a job prints which gets the signal once it works, and ends with 130 within some time."""
+        """Output of a job which gets the signal once it works, and ends with 130 within some time."""
         self.until(lambda: job.works(works), f"{works} s of work", job)
         begin = time.monotonic()
         job.signal(number)

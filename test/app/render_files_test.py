@@ -18,7 +18,7 @@ class Outputs(ProgramTest):
         scene("long", f'{SKY} Shape "sphere"', 2000, 2000, 1000000)
 
     def test_outputs_are_checked_before_the_render(self):
-        """It would take hours."""
+        """The render would take hours."""
         os.mkdir("folder.exr")
         name = "x" * 252  # with .exr it has a letter too many
         self.expect_each(f"""
@@ -51,7 +51,7 @@ class Outputs(ProgramTest):
         self.expect(0, "8 x 6 pixels", "render 'any name' -o picture.exr")
 
     def on_small_disk(self, size, line):
-        """What a render prints which fails, since no file may be larger."""
+        """Output of a render that fails since no file may be larger."""
         def limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
@@ -78,7 +78,7 @@ class Outputs(ProgramTest):
             self.assertNotEqual(self.start("render ok.pbrt", stdout=full).ended().code, 0)
 
     def test_messages_do_not_get_into_a_picture(self):
-        """It is opened while the standard streams are closed."""
+        """The picture is opened while the standard streams are closed."""
         subprocess.run(["sh", "-c", f'exec "{PROGRAM}" render ok.pbrt -o closed.exr >&- 2>&- <&-'], timeout=60)
         self.expect(0, "8 x 6 pixels", "info closed.exr")
 

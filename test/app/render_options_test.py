@@ -99,7 +99,7 @@ class Effects(OptionsTest):
                 self.assert_differ("one.pfm", "seed.pfm")
                 self.quietly(f"{line} --crop 0.25,0.75,0.5,1 -o crop.pfm")
                 _, _, whole = read_pfm("one.pfm")
-                rows = [whole[192 * row + 48:192 * row + 144] for row in range(24)]  # of the lower half
+                rows = [whole[192 * row + 48:192 * row + 144] for row in range(24)]  # the lower half
                 self.assertEqual(read_pfm("crop.pfm"), (32, 24, sum(rows, ())))
 
     def test_options_change_the_picture(self):

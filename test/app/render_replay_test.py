@@ -45,7 +45,7 @@ class Replay(ProgramTest):
         self.assert_absent("ok.exr", "picture.exr")
 
     def test_radiance_of_a_lamp_that_no_path_can_hit_has_a_density(self):
-        """It is no point light."""
+        """The lamp is no point light."""
         scene("hidden", """AttributeBegin AreaLightSource "diffuse" "bool twosided" true Translate 0 0 3
     Shape "disk" "float alpha" 0 AttributeEnd Shape "sphere\"""", 64, 48)
         text = self.expect(0, "per steradian; weight 1", "render hidden.pbrt --strategy bsdf --debug-sample 32,20,0")

@@ -97,7 +97,7 @@ class Viewer:
 
 
 class Picture:
-    """What the tiles of the protocol make of layers."""
+    """Layers that are put together from the tiles of the protocol."""
 
     def __init__(self, scene):
         self.scene = scene
