@@ -280,7 +280,7 @@ class Checkpoints(ProgramTest):
         self.until(lambda: os.path.exists("state"), "a checkpoint", job=job)
         time.sleep(wait)
         job.signal(signal.SIGKILL)
-        self.assertEqual(job.ended().code, -signal.SIGKILL, "it had ended")
+        self.assertIn(job.ended().code, (0, -signal.SIGKILL))
         return without_seconds(self.output(f"{line} --checkpoint state --resume --json"))
 
     def test_killed_run_resumes_to_the_same_digits(self):

@@ -347,8 +347,8 @@ class ProgramTest(unittest.TestCase):
 
 
 def steps(text):
-    """A test whose lines need those before them: CODE TEXT $ LINE expects this, A == B that two files have the same bytes,
-    A != B that they differ, A ~ B that pictures have the same pixels, `no A B` that files are absent."""
+    """A test whose lines need those before them: CODE TEXT $ LINE expects this, A == B that two files have the same
+    bytes, A != B that they differ, A ~ B that pictures have the same pixels, `no A B` that files are absent."""
     return lambda self: self.take(text)
 
 

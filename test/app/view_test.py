@@ -14,7 +14,7 @@ from view_client import Picture, Viewer, hostile
 WORLD = """LightSource "infinite" "rgb L" [0.2 0.3 0.4] LightSource "point" "rgb I" [9 9 9] "point3 from" [0 0.9 1.2]
 Material "diffuse" Shape "sphere" "float radius" 0.7"""
 LAYERS = "mean error skewness albedo normal depth samples replicates outlier warning".split()
-ATTACKED_SECONDS = 15  # a render; the attacks take half of it
+ATTACKED_SECONDS = 20  # a render; the attacks take half of it
 
 
 class Tev:
