@@ -251,6 +251,10 @@ class Results(ProgramTest):
         self.assertRegex(text, "(?m)^warning: ")
         self.assertNotIn("doubt", text, "another word for a warning")
 
+    def test_progress_on_a_terminal_shows_the_value(self):
+        outcome = self.on_terminal("integrate x --over x=0:1 --method basic --relative-error 1e-9 --time 0.5")
+        self.assertIn("evaluations, 0.", outcome.text)
+
     def test_mistakes(self):
         self.expect_each(MISTAKES, "integrate ")
 

@@ -67,10 +67,6 @@ class Progress(ProgramTest):
         for line in full:
             self.assertLessEqual(float(re.search(r".* error ([0-9.]+)", line)[1]), 7, line)
 
-    def test_integral_shows_its_value(self):
-        outcome = self.on_terminal("integrate x --over x=0:1 --method basic --relative-error 1e-9 --time 0.5")
-        self.assertIn("evaluations, 0.", outcome.text)
-
     def test_render_that_is_interrupted_in_its_pilot_has_seen_every_pixel(self):
         job = self.start("render large.pbrt --target-error 0.1% -o early.exr")
         self.interrupted(job, works=5)
