@@ -93,6 +93,22 @@ TEST(Alpha, StackedLayersAreIndependent) {
     }
 }
 
+TEST(Alpha, TrianglesOfOneMeshAreIndependent) {
+    TriangleMesh mesh = sheet(0);
+    const TriangleMesh below = sheet(-1);
+    mesh.positions.insert(mesh.positions.end(), below.positions.begin(), below.positions.end());
+    mesh.uvs.insert(mesh.uvs.end(), below.uvs.begin(), below.uvs.end());
+    for (const Index vertex : below.indices) mesh.indices.push_back(vertex + 4);
+    Scene scene;
+    scene.shapes[add_shape(scene, std::move(mesh))].alpha = {0.5f};
+    World world(std::move(scene));
+    Draws draws(5);
+    constexpr int n = 100000;
+    int through = 0;
+    for (int i = 0; i < n; ++i) through += !world.accelerator.occluded(down(draws));
+    expect_share(through, n, 0.25, "two sheets of a mesh");
+}
+
 TEST(Alpha, BothSidesOfASphereAreIndependent) {
     Scene scene;
     Index s =

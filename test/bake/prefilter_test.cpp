@@ -251,6 +251,31 @@ TEST(Prefilter, MissedTargetsAreCounted) {
     EXPECT_THROW(prefilter_environment(map, 0, {0.5}, settings), Error);
 }
 
+// Half of the map is a thousandth as bright as the other: what faces it meets the target by its own brightness.
+TEST(Prefilter, DarkTexelsMeetTheirOwnTarget) {
+    Image image = random_map(64, 32);
+    for (int y = 0; y < image.height(); ++y)
+        for (int x = 0; x < image.width() / 2; ++x)
+            for (int c = 0; c < 3; ++c) image.set(x, y, c, 1e-3f * image.value(x, y, c));
+    const EnvironmentMap map(image, EnvironmentLayout::equirectangular);
+    BakeSettings settings;
+    settings.target_error = 0.02;
+    settings.dark_floor = 1e-4;
+    const BakedCubes baked = prefilter_environment(map, 4, {0.2}, settings);
+    int dark = 0;
+    for (int face = 0; face < cube_faces; ++face)
+        for (int y = 0; y < 4; ++y)
+            for (int x = 0; x < 4; ++x) {
+                const Vec3d value = texel_of(baked.value.levels[0], {face, x, y}),
+                            error = texel_of(baked.standard_error.levels[0], {face, x, y});
+                const double mean = (value.x + value.y + value.z) / 3;
+                dark += mean < 0.1;
+                EXPECT_LE(std::max({error.x, error.y, error.z}), 1.01 * 0.02 * mean)
+                    << face << " " << x << " " << y;
+            }
+    EXPECT_GT(dark, 20);
+}
+
 TEST(Prefilter, TexelsThatAreNotFiniteAreMissed) {
     const double nan = std::numeric_limits<double>::quiet_NaN();
     EXPECT_FALSE(meets({{1, nan, 1}, {0, 0, 0}}, {}));
