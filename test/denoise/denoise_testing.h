@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -94,6 +95,8 @@ struct StandIn {
     bool affinity = true;
     bool bad_input = false;        // a number that is not finite, or a colour below 0, reached the filter
     std::vector<std::string> runs; // the images and switches of each execution
+    // Inputs of the first execution that has them, by name.
+    std::map<std::string, std::vector<float>> inputs;
     std::string error;
 };
 

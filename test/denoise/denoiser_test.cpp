@@ -125,6 +125,27 @@ TEST(Denoiser, NothingBadReachesTheFilter) {
     EXPECT_FALSE(stand_in.bad_input);
 }
 
+TEST(Denoiser, HolesAreTheMeanOfAllEightNeighbours) {
+    StandIn stand_in;
+    const Denoiser denoiser(api_of(stand_in));
+    std::vector<float> color(27);
+    for (std::size_t i = 0; i < color.size(); ++i) color[i] = static_cast<float>(1u << (i / 3));
+    color[13] = nan;
+    denoiser.denoise({3, 3, color, {}, {}});
+    const std::vector<float>& filtered = stand_in.inputs.at("color");
+    for (std::size_t i = 0; i < color.size(); ++i)
+        EXPECT_EQ(filtered[i], i / 3 == 4 ? (511.0f - 16) / 8 : color[i]) << i;
+}
+
+TEST(Denoiser, GuidesKeepTheirRange) {
+    StandIn stand_in;
+    const Denoiser denoiser(api_of(stand_in));
+    const std::vector<float> color(3, 0.5f), albedo{-0.5f, 0.25f, 1.5f}, normal{-0.75f, 0.25f, -1.5f};
+    denoiser.denoise({1, 1, color, albedo, normal});
+    EXPECT_EQ(stand_in.inputs.at("albedo"), (std::vector<float>{0, 0.25f, 1}));
+    EXPECT_EQ(stand_in.inputs.at("normal"), (std::vector<float>{-0.75f, 0.25f, -1}));
+}
+
 TEST(Denoiser, FailuresOfTheLibraryAreErrorsAndNothingLeaks) {
     const Synthetic s(5, 4);
     struct Case {

@@ -26,6 +26,8 @@ void execute(OidnFilter* filter) {
     called("execute_filter");
     current->runs.push_back(filter->asked);
     for (const auto& [name, pixels] : filter->images)
+        if (name != "output") current->inputs.try_emplace(name, pixels, pixels + filter->numbers);
+    for (const auto& [name, pixels] : filter->images)
         for (std::size_t i = 0; i < filter->numbers; ++i) {
             if (name == "output")
                 pixels[i] = current->output;

@@ -129,6 +129,17 @@ TEST(MergeSlices, ClampedLightIsJoined) {
     EXPECT_EQ(std::get<int>(merged.image.attributes().at("clampedSamples")), 100);
 }
 
+TEST(MergeSlices, OneInterruptedSliceIsEnough) {
+    const std::vector<std::string> names{"a", "b", "c"};
+    for (int interrupted = -1; interrupted < 3; ++interrupted) {
+        std::vector<Image> slices{picture(0, 3, 40), picture(1, 3, 40), picture(2, 3, 40)};
+        for (int k = 0; k < 3; ++k)
+            slices[static_cast<std::size_t>(k)].attributes()["interrupted"] = int{k == interrupted};
+        const auto found = merge(slices, names).image.attributes().at("interrupted");
+        EXPECT_EQ(std::get<int>(found), int{interrupted >= 0}) << interrupted;
+    }
+}
+
 // Pictures that are not slices lack the brightest replicates; nothing is lost where there is one alone.
 TEST(MergeSlices, OneWholePictureStaysWhatItIs) {
     const Image whole = picture(0, 1, 24);

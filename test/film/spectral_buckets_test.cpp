@@ -24,6 +24,20 @@ TEST(SpectralBuckets, EveryWavelengthHasOne) {
     EXPECT_EQ(layout.of(700.1f), -1);
 }
 
+TEST(SpectralBuckets, SamplesReachTheLastOfTheMost) {
+    const BucketLayout layout(
+        {.lambda_min = 400, .lambda_max = 700, .buckets = SpectralSettings::most_buckets});
+    for (const float u : {0.1f, 0.5f, 0.9f}) {
+        const auto w = SampledWavelengths::sample_visible(u);
+        const SpectralSample s = spectral_sample(layout, SampledSpectrum(1), w, 1);
+        for (int i = 0; i < 4; ++i)
+            EXPECT_EQ(int{s.bucket[static_cast<std::size_t>(i)]}, layout.of(w.lambda[i])) << w.lambda[i];
+    }
+    SampledWavelengths last = SampledWavelengths::sample_visible(0.5f);
+    last.lambda[0] = 700;
+    EXPECT_EQ(int{spectral_sample(layout, SampledSpectrum(1), last, 1).bucket[0]}, 511);
+}
+
 TEST(SpectralBuckets, LayersAreNamedAsInTheLayout) {
     EXPECT_EQ(spectral_layer(550), "S0.550,000nm");
     EXPECT_EQ(spectral_layer(374.6875f), "S0.374,688nm");
