@@ -308,7 +308,8 @@ class AdaptiveEstimator final : public Estimator {
     }
 
     StepOutcome train(const StepRequest& request) {
-        if (request.max_evaluations < 2 * round_points_) return stop_training(request);
+        if (request.max_evaluations < 2 * round_points_ || !trainer_.has_time_for(round_points_, request))
+            return stop_training(request);
         if (!trainer_.round(round_points_, request)) return StepOutcome::cancelled;
         const double variance = trainer_.relative_variance();
         const bool stuck =
@@ -424,7 +425,8 @@ class AdaptiveEstimator final : public Estimator {
             phase_ = Phase::uniform;
             return;
         }
-        if (!request.targeted() || weighted_.points() < 4 * first_sample() || retrained_ >= max_retrainings)
+        if (!request.targeted() || weighted_.points() < 4 * first_sample() || retrained_ >= max_retrainings ||
+            !trainer_.has_time_for(2 * round_points_, request))
             return;
         const double sampled = static_cast<double>(weighted_.evaluations());
         const double left =

@@ -1,6 +1,7 @@
 #include "montelux/mc/integrate/adaptive/density_trainer.h"
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -18,6 +19,7 @@
 namespace montelux {
 namespace {
 
+using Clock = std::chrono::steady_clock;
 constexpr double flat_share = 0.95;           // effective share of the points that are not zero
 constexpr double enough_even = 0.3;           // relative variance below which no Gaussians are added
 constexpr int first_fit_before_gaussians = 2; // rounds that maps alone are given
@@ -33,6 +35,7 @@ constexpr std::size_t longest_check = 1024;                // steps that check t
 constexpr double few_hits = 4;      // their spread hardly shows in that of the replicates
 constexpr double heavy_shape = 0.4; // of the tail of a round's weights; from 0.5 the variance is infinite
 constexpr std::uint64_t least_seen = 16; // non-zero points of a round needed for a fit
+constexpr std::size_t pdf_block = 8192;
 
 // Scouts walk under |g|^(1 / temperature). In many variables it is lower, so that their effective number, when
 // they are weighted to |g|, stays within an order of magnitude for a Gaussian.
@@ -43,6 +46,17 @@ bool is_heavy_tailed(std::span<const double> weights) {
     tail.add(weights);
     const auto fit = tail.fit(weights.size());
     return fit && fit->shape > heavy_shape;
+}
+
+// q at each point, block by block. False where `stop` said so.
+bool pdf_until(const MixtureDensity& density, const PointBatch& x, std::span<double> q,
+               const std::function<bool()>& stop) {
+    for (std::size_t first = 0; first < x.count(); first += pdf_block) {
+        if (stop()) return false;
+        const std::size_t count = std::min(pdf_block, x.count() - first);
+        density.pdf(x.slice(first, count), q.subspan(first, count));
+    }
+    return true;
 }
 
 } // namespace
@@ -125,6 +139,7 @@ bool DensityTrainer::round(std::uint64_t n, const StepRequest& request) {
         rounds_ % 2 == 1 && lacking(rounds_, relative_variance_) && !density_.gaussians().empty();
     const MixtureDensity drawn = wide ? density_.widened(exploring_width) : density_;
     const std::uint64_t balanced = drawn.balanced_points();
+    const Clock::time_point begin = Clock::now();
     n = std::max<std::uint64_t>(1, n / balanced) * balanced;
     SamplePoints points;
     const auto sums = sample_mixture(problem_.evaluator, drawn, hash_key(problem_.seed, 1, rounds_), 1, 0, n,
@@ -156,7 +171,7 @@ bool DensityTrainer::round(std::uint64_t n, const StepRequest& request) {
         walked = walk(walked_, drawn_round, n / 4, most_walked, 1);
 
     const auto before = std::tuple(rounds_, evaluations_, non_finite_, checks_, relative_variance_, density_,
-                                   recent_, walked_, walks_, enriched_);
+                                   recent_, walked_, walks_, enriched_, uncovered_share_);
     // Nothing is changed before this line, so an exception of the integrand changes nothing.
     ++rounds_;
     evaluations_ += sums->evaluations + walked.evaluations;
@@ -175,10 +190,20 @@ bool DensityTrainer::round(std::uint64_t n, const StepRequest& request) {
         walked_ = std::move(walked.points);
         ++walks_;
     }
-    if (fit([&] { return request.over(); })) return true;
+    if (fit([&] { return request.over(); })) {
+        seconds_per_point_ =
+            std::chrono::duration<double>(Clock::now() - begin).count() / static_cast<double>(n);
+        return true;
+    }
     std::tie(rounds_, evaluations_, non_finite_, checks_, relative_variance_, density_, recent_, walked_,
-             walks_, enriched_) = before;
+             walks_, enriched_, uncovered_share_) = before;
     return false;
+}
+
+bool DensityTrainer::has_time_for(std::uint64_t n, const StepRequest& request) const {
+    if (request.deadline == Clock::time_point::max()) return true;
+    const double seconds = seconds_per_point_ * static_cast<double>(n);
+    return std::chrono::duration<double>(request.deadline - Clock::now()).count() > seconds;
 }
 
 bool DensityTrainer::lacking(int rounds, double relative_variance) const {
@@ -279,7 +304,7 @@ std::optional<double> DensityTrainer::unseen_share(double n, std::uint64_t max_e
     return unseen;
 }
 
-DensityTrainer::Pool DensityTrainer::pool() const {
+std::optional<DensityTrainer::Pool> DensityTrainer::pool(const std::function<bool()>& stop) const {
     const int dimensions = density_.dimensions();
     const Round& last = recent_.back();
     std::size_t drawn = walked_.h.size() + scouts_.h.size(); // points that have a density
@@ -308,7 +333,7 @@ DensityTrainer::Pool DensityTrainer::pool() const {
     }
     std::vector<double> part(count);
     for (const Round& r : recent_) {
-        r.density.pdf(pool.x, part);
+        if (!pdf_until(r.density, pool.x, part, stop)) return std::nullopt;
         for (std::size_t i = 0; i < count; ++i)
             pool.p[i] += part[i] * static_cast<double>(r.h.size()) / static_cast<double>(drawn);
     }
@@ -335,7 +360,9 @@ bool DensityTrainer::fit(const std::function<bool()>& stop) {
     const bool more = !enriched_ && uneven;
     const bool boundary = density_.has_boundary() || (uneven && is_heavy_tailed(weights));
     // Gaussians are fitted to all recent points, weighted by the mixture of the densities that drew them.
-    const Pool all = pool();
+    const std::optional<Pool> seen = pool(stop);
+    if (!seen) return false;
+    const Pool& all = *seen;
     weights.resize(all.h.size());
     double total = 0;
     for (std::size_t i = 0; i < weights.size(); ++i) total += weights[i] = all.h[i] / all.p[i];
@@ -354,9 +381,10 @@ bool DensityTrainer::fit(const std::function<bool()>& stop) {
     density_ = MixtureDensity(dimensions, maps, gaussians, boundary);
     density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_, 0, stop);
     std::vector<double> ratios(all.h.size());
-    auto compare = [&] {
-        density_.pdf(all.x, ratios);
+    auto compare = [&](const MixtureDensity& density) {
+        if (!pdf_until(density, all.x, ratios, stop)) return false;
         for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = all.h[i] / ratios[i];
+        return true;
     };
     auto second_moment = [&] {
         const double most = MixtureDensity::beyond_reach * total / static_cast<double>(ratios.size());
@@ -364,14 +392,13 @@ bool DensityTrainer::fit(const std::function<bool()>& stop) {
         for (std::size_t i = 0; i < ratios.size(); ++i) sum += weights[i] * std::min(ratios[i], most);
         return sum;
     };
-    density_before.pdf(all.x, ratios);
-    for (std::size_t i = 0; i < ratios.size(); ++i) ratios[i] = all.h[i] / ratios[i];
+    if (!compare(density_before)) return false;
     const double before = second_moment();
-    compare();
+    if (!compare(density_)) return false;
     if (second_moment() > before) {
         density_ = std::move(density_before);
         maps.assign(density_.maps().begin(), density_.maps().end());
-        compare();
+        if (!compare(density_)) return false;
     }
     density_.drop_idle();
     const int room = most_gaussians - static_cast<int>(density_.gaussians().size());
@@ -393,11 +420,10 @@ bool DensityTrainer::fit(const std::function<bool()>& stop) {
             density_ =
                 MixtureDensity(dimensions, std::move(maps), std::move(gaussians), density_.has_boundary());
             density_.optimise_shares(all.x, all.h, all.p, uniform_units_, share_step_, newest, stop);
-            compare();
+            if (!compare(density_)) return false;
             uncovered_share_ = uncovered();
         }
     }
-    if (stop()) return false;
     remember(all, ratios);
     return true;
 }

@@ -41,6 +41,8 @@ class DensityTrainer {
     // One round of n points, about (a multiple of what the density divides exactly). False when cancelled:
     // nothing changed.
     bool round(std::uint64_t n, const StepRequest& request);
+    // Would a round of n points end before the deadline, if its points took as long as those of the last?
+    bool has_time_for(std::uint64_t n, const StepRequest& request) const;
     // Walks under |g| from points of the last round, and returns the share of the integral that lies where n
     // points of the density are expected to hit too rarely for their spread to tell. The next fit sees the
     // walked points.
@@ -96,9 +98,10 @@ class DensityTrainer {
     // ridges, of which they could not reach the ends.
     Walk walk(const WalkedPoints& before, const Round& last, std::uint64_t max_evaluations,
               std::size_t longest, double exponent, bool traces = false) const;
-    // False where `stop` said so, before anything changed.
+    // False where `stop` said so; what it had changed by then, round() undoes.
     bool fit(const std::function<bool()>& stop);
-    Pool pool() const;
+    // Empty where `stop` said so.
+    std::optional<Pool> pool(const std::function<bool()>& stop) const;
     void remember(const Pool& all, std::span<const double> ratios);
 
     Problem problem_;
@@ -118,6 +121,7 @@ class DensityTrainer {
     double relative_variance_ = 0, effective_share_ = 0, uncovered_share_ = 0;
     std::uint64_t nonzero_ = 0, evaluations_ = 0, peaks_ = 0, searched_points_ = 0, search_evaluations_ = 0;
     NonFiniteCount non_finite_;
+    double seconds_per_point_ = 0; // of the last round, its fit included
 };
 
 } // namespace montelux

@@ -123,7 +123,10 @@ void MixtureDensity::optimise_shares(const PointBatch& x, std::span<const double
     const auto n = static_cast<std::size_t>(channels());
     if (n == 1) return;
     std::vector<std::vector<double>> q(n, std::vector<double>(x.count()));
-    for (std::size_t k = 0; k < n; ++k) channel_pdf(static_cast<int>(k), x, q[k]);
+    for (std::size_t k = 0; k < n; ++k) {
+        if (stop && stop()) return;
+        channel_pdf(static_cast<int>(k), x, q[k]);
+    }
     const double least = static_cast<double>(uniform_units) / units;
     // A single point of far larger weight must not decide the shares.
     double total = 0;

@@ -68,8 +68,8 @@ class MixtureDensity {
     // Shares that make the second moment of h / q small, given points x drawn with density p and h there
     // (Kleiss and Pittau 1994, "Weight optimization in multichannel Monte Carlo"). The uniform channel keeps
     // `uniform_units` at least, that of the boundary one, and each of the last `newest` channels at least one
-    // step, since its benefit is not known yet. Shares are multiples of `step` units, a power of two. Iterations
-    // end where `stop` is true.
+    // step, since its benefit is not known yet. Shares are multiples of `step` units, a power of two. The work
+    // ends early where `stop` is true.
     void optimise_shares(const PointBatch& x, std::span<const double> h, std::span<const double> p,
                          int uniform_units, int step = 1, int newest = 0,
                          const std::function<bool()>& stop = {});

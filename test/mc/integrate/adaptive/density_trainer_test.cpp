@@ -1,4 +1,5 @@
 #include <atomic>
+#include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <memory>
@@ -194,6 +195,53 @@ TEST(DensityTrainer, CancelledOrInterruptedStepsChangeNothing) {
     EXPECT_EQ(words_of(trainer), before);
     EXPECT_THROW(trainer.unseen_share(1e4, 4096), Stopped);
     EXPECT_EQ(words_of(trainer), before);
+}
+
+TEST(DensityTrainer, RoundsThatRunOutOfTimeChangeNothing) {
+    using Clock = std::chrono::steady_clock;
+    const Watched ring(
+        [](std::span<const double> x) {
+            return std::exp(-2000 * std::pow(std::hypot(x[0] - 0.5, x[1] - 0.5) - 0.3, 2));
+        },
+        2);
+    DensityTrainer trainer(ring.problem(), 4);
+    explore(trainer, ring);
+    for (int i = 0; i < 4; ++i) ASSERT_TRUE(trainer.round(4096, {}));
+    ASSERT_GT(trainer.density().gaussians().size(), 0u);
+    const std::vector<std::uint64_t> before = words_of(trainer);
+    EXPECT_FALSE(trainer.round(4096, {.deadline = Clock::now()}));
+    EXPECT_EQ(words_of(trainer), before);
+    // Ends within every part of a round.
+    const Clock::time_point begin = Clock::now();
+    constexpr int parts = 24;
+    auto loaded = [&] {
+        StateReader reader(before);
+        DensityTrainer copy(ring.problem(), 4);
+        copy.load(reader);
+        return copy;
+    };
+    DensityTrainer whole = loaded();
+    ASSERT_TRUE(whole.round(4096, {}));
+    const Clock::duration duration = Clock::now() - begin;
+    for (int k = 1; k < parts; ++k) {
+        DensityTrainer late = loaded();
+        const bool done = late.round(4096, {.deadline = Clock::now() + k * duration / parts});
+        EXPECT_EQ(words_of(late), done ? words_of(whole) : before) << k << " of " << parts;
+    }
+}
+
+TEST(DensityTrainer, RoundsThatWouldBeLateAreNotBegun) {
+    using Clock = std::chrono::steady_clock;
+    const Watched watched([](std::span<const double> x) { return peak(x, 0.4, 50); }, 3);
+    DensityTrainer trainer(watched.problem(), 4);
+    explore(trainer, watched);
+    const StepRequest soon{.deadline = Clock::now() + std::chrono::hours(1)};
+    constexpr std::uint64_t many = std::uint64_t{1} << 62;
+    EXPECT_TRUE(trainer.has_time_for(many, soon)); // nothing is known yet
+    ASSERT_TRUE(trainer.round(2048, soon));
+    EXPECT_TRUE(trainer.has_time_for(2048, soon));
+    EXPECT_FALSE(trainer.has_time_for(many, soon));
+    EXPECT_TRUE(trainer.has_time_for(many, {}));
 }
 
 TEST(DensityTrainer, LoadedOneResumesWithTheSameBits) {
