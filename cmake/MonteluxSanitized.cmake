@@ -10,18 +10,17 @@ function(montelux_sanitized_room room)
     target_include_directories(${name}_sanitized SYSTEM PRIVATE $<TARGET_PROPERTY:${name},INCLUDE_DIRECTORIES>)
     target_compile_definitions(${name}_sanitized PRIVATE $<TARGET_PROPERTY:${name},COMPILE_DEFINITIONS>)
     target_link_libraries(${name}_sanitized PRIVATE ${links})
-    # Checks that take a quarter of the compiler's time; the build with MONTELUX_SANITIZE has them.
-    target_compile_options(${name}_sanitized PRIVATE ${MONTELUX_SANITIZER_FLAGS} -fno-sanitize=alignment,object-size,vptr)
+    target_compile_options(${name}_sanitized PRIVATE ${MONTELUX_SANITIZER_FLAGS})
 endfunction()
 
-# montelux_sanitized_test(room shares [ROOMS rooms...] [FILES regular expression]): the tests of a room, or those of some
-# files, with the sanitized objects of the room and of ROOMS. The tests themselves are those that are compiled anyway, and
-# share as many processes as `shares` says: a program with sanitizers takes longer to start than most tests take.
+# montelux_sanitized_test(room shares [ROOMS rooms...] [FILES regular expression]): links the plain objects of a room's
+# tests with the sanitized objects of the room and of ROOMS; FILES selects the test files whose suites run. The tests are
+# split into `shares` processes: starting a program with sanitizers takes longer than most tests.
 function(montelux_sanitized_test room shares)
     cmake_parse_arguments(ARG "" "FILES" "ROOMS" ${ARGN})
     string(REPLACE "/" "_" plain "${room}_test")
     set(name ${plain}_sanitized)
-    # Functions of headers come from the first object that has them: the sanitized ones.
+    # Sanitized objects come first: the linker keeps the first copy of an inline function.
     set(objects)
     foreach(used ${room} ${ARG_ROOMS})
         string(REPLACE "/" "_" used "montelux_room_${used}_sanitized")

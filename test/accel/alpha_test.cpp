@@ -25,6 +25,16 @@ void expect_share(int count, int n, double share, const char* what) {
     EXPECT_NEAR(double(count) / n, share, 5.5 * std::sqrt(share * (1 - share) / n)) << what;
 }
 
+// Two surfaces of alpha 1/2 that decide independently let a quarter of the rays through.
+void expect_a_quarter_through(Scene scene, std::uint64_t seed, const char* what) {
+    World world(std::move(scene));
+    Draws draws(seed);
+    constexpr int n = 100000;
+    int through = 0;
+    for (int i = 0; i < n; ++i) through += !world.accelerator.occluded(down(draws));
+    expect_share(through, n, 0.25, what);
+}
+
 TEST(Alpha, AConstantIsAProbability) {
     for (float alpha : {0.0f, 0.3f, 0.9f, 1.0f}) {
         Scene scene;
@@ -74,7 +84,6 @@ TEST(Alpha, AConstantOnQuadrics) {
     }
 }
 
-// Each surface decides for itself: two layers of alpha a let (1 - a)^2 through.
 TEST(Alpha, StackedLayersAreIndependent) {
     for (bool quadrics : {false, true}) {
         Scene scene;
@@ -84,12 +93,7 @@ TEST(Alpha, StackedLayersAreIndependent) {
                           : add_shape(scene, sheet(z));
             scene.shapes[s].alpha = {0.5f};
         }
-        World world(std::move(scene));
-        Draws draws(3);
-        constexpr int n = 100000;
-        int through = 0;
-        for (int i = 0; i < n; ++i) through += !world.accelerator.occluded(down(draws));
-        expect_share(through, n, 0.25, quadrics ? "disks" : "sheets");
+        expect_a_quarter_through(std::move(scene), 3, quadrics ? "disks" : "sheets");
     }
 }
 
@@ -101,12 +105,7 @@ TEST(Alpha, TrianglesOfOneMeshAreIndependent) {
     for (const Index vertex : below.indices) mesh.indices.push_back(vertex + 4);
     Scene scene;
     scene.shapes[add_shape(scene, std::move(mesh))].alpha = {0.5f};
-    World world(std::move(scene));
-    Draws draws(5);
-    constexpr int n = 100000;
-    int through = 0;
-    for (int i = 0; i < n; ++i) through += !world.accelerator.occluded(down(draws));
-    expect_share(through, n, 0.25, "two sheets of a mesh");
+    expect_a_quarter_through(std::move(scene), 5, "two sheets of a mesh");
 }
 
 TEST(Alpha, BothSidesOfASphereAreIndependent) {
@@ -114,12 +113,7 @@ TEST(Alpha, BothSidesOfASphereAreIndependent) {
     Index s =
         add_shape(scene, Quadric(Sphere{.radius = 2, .z_min = -2, .z_max = 2, .world_from_object = {}}));
     scene.shapes[s].alpha = {0.5f};
-    World world(std::move(scene));
-    Draws draws(4);
-    constexpr int n = 100000;
-    int through = 0;
-    for (int i = 0; i < n; ++i) through += !world.accelerator.occluded(down(draws));
-    expect_share(through, n, 0.25, "sphere");
+    expect_a_quarter_through(std::move(scene), 4, "sphere");
 }
 
 // A mask of 0 and 1 cuts exactly, seen along any ray; u and v run as the vertices say, also in an instance.

@@ -1,4 +1,4 @@
-"""Baking: files, options, messages, odd maps; no partial files are left."""
+"""Baking: files, options, messages and unusual maps; no partial files are left."""
 
 import os
 import resource
@@ -134,7 +134,7 @@ class Bake(ProgramTest):
         self.assertGreater(os.path.getsize("f_m1_nz.exr"), 0)
         self.quietly("bake environment sky.pfm --size 4 -o q.exr")
 
-    def test_bytes_depend_on_the_map_and_not_on_the_number_of_threads(self):
+    def test_results_do_not_depend_on_the_number_of_threads(self):
         line = "--size 8 --levels 3"
         self.environment(f"{line} -o t1.pfm --threads 1")
         self.environment(f"{line} -o t3.pfm --threads 3")
@@ -143,7 +143,7 @@ class Bake(ProgramTest):
             self.environment(f"{line} -o other.pfm {change}")
             self.assert_differ("t1_m1.pfm", "other_m1.pfm", change)
 
-    def test_odd_maps(self):
+    def test_unusual_maps(self):
         pfm("one.pfm", 1, 1, 1, 0.5, 2)
         pfm("tall.pfm", 1, 3, 1, 1, 1, 0.5, 0.5, 0.5, 1, 1, 1)
         pfm("bad.pfm", 2, 1, -1, NAN, INFINITE, 1, 1, 1)
@@ -153,7 +153,7 @@ class Bake(ProgramTest):
         self.expect_each(ODD_MAPS, "bake environment ")
         self.expect(1, "is expected, so that sums are finite", "bake report large.pfm --roughness 0.5 --orientations 2")
 
-    def test_nothing_is_written_over_the_map(self):
+    def test_input_map_is_not_overwritten(self):
         for name in "map.pfm", "map_m1.pfm":
             shutil.copy("sky.pfm", name)
         os.symlink("map.pfm", "link.pfm")
@@ -170,7 +170,7 @@ class Bake(ProgramTest):
         for name in "map.pfm", "map_m1.pfm":
             self.assert_same(name, "sky.pfm")
 
-    def test_output_that_cannot_be_written_does_not_cost_the_others(self):
+    def test_one_unwritable_output_leaves_the_others(self):
         def small_disk():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (4096, 4096))
@@ -181,7 +181,7 @@ class Bake(ProgramTest):
         self.assert_absent("lost.exr")
         self.assertTrue(read("kept.json"))
 
-    def test_nothing_is_written_when_it_is_stopped(self):
+    def test_interruption_writes_nothing(self):
         job = self.start("bake environment sky.pfm --size 1024 -o stopped.exr --target-error 1e-4")
         self.assertIn("interrupted, nothing was written", self.interrupted(job))
         self.assert_absent(".*", "*stopped*")

@@ -1,4 +1,4 @@
-"""Commands of the program: help, completion, manual pages, and small ones of pictures - info, compare, formats."""
+"""Commands of the program: help, completion, manual pages, and info, compare and formats of pictures."""
 
 import os
 import re
@@ -55,14 +55,14 @@ ANSWERS = [
     (0, "standard errors of B alone", "compare a.pfm b.pfm --stderr-b b.pfm"),
     (0, '"largest": 0.5', "compare a.pfm b.pfm --stderr-b b.pfm --json"),
 ]  # fmt: skip
-# Words of a command line, and what may stand for the last.
+# (words of a command line, candidates that complete the last one)
 COMPLETIONS = [
     ("re", "render"),
     ("render --ton", "--tone"),
     ("render scene.pbrt --tone ''", "linear srgb aces agx filmic"),
     ("render --tone a", "aces agx"),
     ("render --tone=a", "--tone=aces --tone=agx"),
-    ("render --tone = a", "aces agx"),  # bash splits it so
+    ("render --tone = a", "aces agx"),  # bash splits words at "="
     ("render --tone =", "linear srgb aces agx filmic"),
     ("render --adaptive ''", "on off"),
     ("render --layers position,de", "position,default position,depth position,depth-slopes"),
@@ -110,7 +110,7 @@ class Commands(ProgramTest):
         self.assert_same("e.png", "kept.png")
 
     def test_values_that_are_not_finite_are_counted(self):
-        """Minimum, mean and maximum are of the others."""
+        """Minimum, mean and maximum are taken over the finite values."""
         pfm("infinite.pfm", 2, 1, 1, INFINITE, 1, 1, INFINITE, NAN)
         rows = {row[0]: row[1:] for row in map(str.split, self.output("info infinite.pfm").splitlines()) if row}
         self.assertEqual((rows["R"][0], rows["R"][2]), ("1", "1"))
@@ -119,7 +119,7 @@ class Commands(ProgramTest):
 
     def test_full_disk_or_closed_stream_behind_standard_output_is_noticed(self):
         scene("layers", SKY, 2, 2, 1)
-        self.expect(0, "layers.exr", "render layers.pbrt")  # its JSON is longer than what is kept until the end
+        self.expect(0, "layers.exr", "render layers.pbrt")  # its JSON exceeds the buffer of the stream
         for line in "info a.pfm", "info layers.exr --json", "--version", "--help", "compare a.pfm b.pfm --json":
             for stream in ">/dev/full", ">&-":
                 with self.subTest(line + stream):

@@ -1,4 +1,4 @@
-"""Damaged pictures and models of other projects: each gives a picture or one sentence, in little time and memory."""
+"""Damaged pictures and models: each gives a picture or one error message, in bounded time and memory."""
 
 import mmap
 import resource
@@ -10,7 +10,7 @@ SECONDS, BYTES = 10, 3 << 29
 
 
 def has_sanitizer():
-    """Sanitizers reserve address space."""
+    """Whether the program is built with sanitizers, which reserve address space."""
     with open(PROGRAM, "rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as image:
         return image.find(b"__asan_init") >= 0
 
@@ -40,7 +40,7 @@ class DamagedFiles(ProgramTest):
         return found
 
     def test_pictures(self):
-        """Each by its name and by that of an OpenEXR file, as a texture and as an environment."""
+        """Each file under its own name and renamed to .exr, as a texture and as an environment."""
         for file in self.files("exr/*", "images/*", least=45):
             shutil.copy(file, "named.exr")
             for name in file, "named.exr":

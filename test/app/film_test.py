@@ -1,4 +1,4 @@
-"""Parts of a picture: crops keep their place, layers are chosen by name, slices join to the whole."""
+"""Parts of a picture: crops keep their place, layers are chosen by name, slices are merged to the whole."""
 
 import os
 import re
@@ -7,7 +7,7 @@ from program import SKY, ProgramTest, each, edited, scene, steps
 
 
 class Crops(ProgramTest):
-    """Compare, merge and resumed renders use their place in EXR files."""
+    """Crops, whose place in EXR files is used by compare, merge and resumed renders."""
 
     RENDER = "render ball.pbrt --sampler independent --quiet"
     CROP = f"{RENDER} --crop 0.25,0.75,0.5,1"
@@ -57,7 +57,7 @@ class Crops(ProgramTest):
         resumed.exr ~ whole.exr
     """)
 
-    def test_whole_picture_has_no_place(self):
+    def test_whole_picture_has_no_crop_window(self):
         self.assertNotRegex(self.output("info whole.exr"), "(data|display)Window")
         result = self.json("compare crop.exr whole.exr")
         self.assertEqual((result["width"], result["height"], result["window"]), (32, 24, [16, 24, 48, 48]))
@@ -110,7 +110,7 @@ alpha,direct,indirect,light-groups,shape,material --layer-space camera -o all.ex
         0 32-bit float $ info wide.exr
         0 values beyond the range of 16-bit floats became 65504 $ render bright.pbrt --layers mean --half -o bright.exr
     """)
-    # Camera space, unless the film says otherwise.
+    # The default is camera space.
     test_film_of_pbrt_has_layers = steps("""
         0 $ render gbuffer.pbrt -o g.exr
         0 P.Z & Ng.X & dzdy & uv.V & variance.G & "layerSpace" = "camera" $ info g.exr
@@ -121,7 +121,7 @@ alpha,direct,indirect,light-groups,shape,material --layer-space camera -o all.ex
           $ compare c.exr g.exr
     """)
 
-    def test_halfs_are_small(self):
+    def test_half_precision_makes_files_smaller(self):
         self.quietly("render ball.pbrt --layers default,position,shape --half -o small.exr")
         self.quietly("render ball.pbrt --layers default,position,shape -o large.exr")
         self.assertLess(os.path.getsize("small.exr"), 0.75 * os.path.getsize("large.exr"))
@@ -158,7 +158,7 @@ class Slices(ProgramTest):
             cls.expect(0, "samples per pixel", f"{line} --slice {k}/{n} -o {file}")
         return names
 
-    def test_slices_join_to_the_whole(self):
+    def test_merged_slices_equal_the_whole(self):
         for sampler in "independent", "sobol":
             self.expect(0, "", f"{self.RENDER} {sampler} -o whole.exr")
             one, two, three = self.slices("part", f"{self.RENDER} {sampler}")
@@ -171,7 +171,7 @@ class Slices(ProgramTest):
         return [float(value) for row in rows for value in row]
 
     def test_fireflies_are_found_from_the_replicates_of_all_slices(self):
-        """Replicates of slices that have a single one, too."""
+        """Slices of one replicate each are included."""
         scene("lamp", f"""{SKY} Material "diffuse" Shape "sphere" AttributeBegin
 AreaLightSource "diffuse" "rgb L" [500 500 500]
 Translate 1.1 0.6 0 Shape "sphere" "float radius" 0.008 AttributeEnd""", 16, 12)

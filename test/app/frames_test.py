@@ -1,4 +1,4 @@
-"""Sequences: the frames of animations and turntables, those that are skipped, and those that an interruption leaves."""
+"""Sequences: frames of animations and turntables, skipped frames, interruption."""
 
 import json
 import os
@@ -38,14 +38,14 @@ class Animations(FramesTest):
         cls.expect(0, "still.pfm", f"{cls.STILL} -o still.pfm")
 
     def test_frames_have_numbers_and_show_motion(self):
-        """The camera is that of the whole animation."""
+        """One camera frames the whole animation."""
         self.expect(0, "out.0003.png, out.0003.pfm: 32 x 24 pixels",
                     f"render moving.gltf {SMALL} --frames 1-5x2 --frame-rate 2 -o out.png -o out.pfm")  # fmt: skip
         self.assertEqual(sorted(str(path) for path in Path().glob("out.0*.p*")),
                          [f"out.000{k}.{end}" for k in (1, 3, 5) for end in ("pfm", "png")])  # fmt: skip
         self.assert_differ("out.0001.pfm", "out.0003.pfm")
 
-    # Frame n: (n - 1) / rate.
+    # The time of frame n is (n - 1) / rate.
     test_frame_is_the_scene_at_its_time = steps(f"""
         0 film.0004.pfm $ {FRAMED} --frames 4 --frame-rate 6 -o film.pfm
         still.pfm == film.0004.pfm
@@ -65,7 +65,7 @@ class Animations(FramesTest):
 
 
 class FinishedFrames(FramesTest):
-    """Frames of these settings, and with these bytes, are skipped."""
+    """Frames whose settings and files are unchanged are skipped."""
 
     LINE = f"render moving.gltf {SMALL} --frames 2"
 
@@ -92,7 +92,7 @@ class FinishedFrames(FramesTest):
         0 skipped: frames 2 $ {LINE} -o a.png
     """)
 
-    def test_other_scene_of_the_name_is_rendered_anew(self):
+    def test_changed_scene_is_rendered_anew(self):
         line = f"render changed.gltf {SMALL} --frames 2 -o c.png"
         write("changed.gltf", read("moving.gltf"))
         self.expect(0, "c.0002.png: 32 x 24", line)
@@ -105,8 +105,8 @@ class FinishedFrames(FramesTest):
         os.rename("old", "new")
         self.expect(0, "skipped: frames 2 (new/out.frames)", f"{self.LINE} -o new/out.png")
 
-    def test_log_that_someone_edited(self):
-        write("log.frames", "montelux frames 1\nnonsense\n0 0 0\n")  # its lines are left out
+    def test_edited_log_of_frames(self):
+        write("log.frames", "montelux frames 1\nnonsense\n0 0 0\n")  # lines that are not understood are ignored
         write("diary.frames", "a diary\n")
         self.take(f"""
             0 log.0002.png: 32 x 24 $ {self.LINE} -o log.png
@@ -126,7 +126,7 @@ class Turntables(FramesTest):
         write("rest.gltf", json.dumps(MOVING))
         pfm("map.0001.pfm", 2, 1, 1)
 
-    def test_first_frame_is_the_picture_without_it_and_later_ones_are_turned(self):
+    def test_turntable_begins_at_the_still_picture(self):
         self.take(f"""
             0 tent.obj has no camera $ {self.LINE} --turntable 4 -o turn.pfm
             0 $ {self.LINE} -o tent.pfm
@@ -137,11 +137,11 @@ class Turntables(FramesTest):
         """)
         self.assertLess(self.json("compare back.pfm turn.0003.pfm")["rmse"], 0.01, "half a turn")
 
-    def test_each_frame_chooses_its_integrator_and_is_found_again(self):
+    def test_integrator_is_chosen_for_each_frame(self):
         self.assertEqual(self.expect(0, "", self.CHOSEN).count("montelux: integrator path: "), 2)
         self.expect(0, "skipped: frames 1-2", self.CHOSEN)
 
-    def test_frame_that_misses_its_target_does_not_end_the_sequence(self):
+    def test_sequence_continues_after_a_missed_target(self):
         line = "render tent.obj --resolution 32x24"
         self.expect(0, "target reached", f"{line} --max-spp 256 --target-error 50% --turntable 1 -o turn.exr")
         self.expect(3, "samples are used up before the target was reached",

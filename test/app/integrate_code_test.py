@@ -26,7 +26,7 @@ VALUES = [
     (0.5, 1e-3, "--source other.c --over x=0:1"),
     (0.5, 1e-3, "--source f.c:lines --components 1 --let a=1 --over x=0:a"),
     (0.333333, 1e-3, "--source f.c --let b=1 --over x=0:b"),  # a function may ignore its parameters
-    # Constants in formulas, ranges and densities; pi and e give way to them.
+    # Constants in formulas, ranges and densities; they may redefine pi and e.
     (4.5, 1e-3, "a*x --let a=4 --over x=0:b --let b=a*3/8"),
     (1, 1e-3, "k*exp(-k*x) --let k=5 --over x=0:inf --density x=exp(-k*x)"),
     (3, 1e-3, "e --let e=3 --over x=0:1"),
@@ -66,7 +66,7 @@ MISTAKES = """
 
 
 class CodeTest(ProgramTest):
-    """Its temporary files are in a folder of their own."""
+    """Tests whose temporary files are in a folder of their own."""
 
     @classmethod
     def prepare(cls):
@@ -98,7 +98,7 @@ class CodeTest(ProgramTest):
 
 class Functions(CodeTest):
     def test_formula_and_function_give_the_same_digits(self):
-        """A name with a colon, one in a folder, and the function named or not."""
+        """File names with a colon and in a folder, with and without the name of the function."""
         os.mkdir("a b")
         shutil.copy("f.c", "a b/g:h.c")
         options = "--over x1..x3=0:1 --evaluations 1e4 --quiet"
@@ -127,7 +127,7 @@ class Functions(CodeTest):
             value = self.json("integrate --source g.cpp:twice --over x=0:1", environment=environment)["value"]
             self.assert_near(value, exact, 1e-3)
 
-    def test_checkpoint_is_of_the_function(self):
+    def test_checkpoint_belongs_to_the_function(self):
         line = "integrate --over x=0:1 --method vegas --checkpoint state"
         self.output(f"{line} --source f.c --evaluations 2e4")
         self.expect(0, "0.333", f"{line} --source f.c --evaluations 4e4 --resume")
@@ -148,7 +148,7 @@ class Functions(CodeTest):
 
 
 class Device(CodeTest):
-    """Emulation of a device gives the processor's digits, and is told what is missing."""
+    """Results on an emulated device equal those of the processor; errors name what is missing."""
 
     @classmethod
     def prepare(cls):
@@ -175,7 +175,7 @@ void powers(int n, const double *x, int m, double *y, const double *parameters) 
         self.same("'1/(x-0.5)*0 + (x < 0.1 ? sqrt(0-1) : y)' --over x,y=0:1 --method basic --evaluations 20k")
 
     def test_flags_of_the_user_do_not_change_the_arithmetic(self):
-        """-ffast-math knows no infinite ranges."""
+        """-ffast-math would break infinite ranges."""
         self.same("exp(-x^2)*cos(y) --over x=0:inf --over y=0:pi/2 --method vegas --evaluations 20k",
                   environment={"CXXFLAGS": "-ffast-math"})  # fmt: skip
 

@@ -1,7 +1,7 @@
-"""The commands that the documentation shows print what it shows.
+"""Commands in the documentation print the output that is shown below them.
 
 Each `$ montelux integrate ...` and `$ montelux sample ...` of a code block, up to the next `$` or the end of the block.
-Where a line shown ends with ..., its beginning is compared.
+Of a line that ends with ... the beginning is compared.
 """
 
 import os
@@ -55,7 +55,7 @@ class Documentation(ProgramTest):
     def setUp(self):
         self.addCleanup(os.chdir, os.getcwd())
 
-    def test_commands_print_what_the_pages_show(self):
+    def test_output_of_commands(self):
         for page in PAGES:
             os.makedirs(f"{self.folder}/{page}")
             os.chdir(f"{self.folder}/{page}")

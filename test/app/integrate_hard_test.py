@@ -6,7 +6,7 @@ import json
 
 from program import ProgramTest
 
-# Peaks of which the first points see a few; a curved ridge; a thin ring.
+# Many peaks, few of which the first points see; a curved ridge; a thin ring.
 EGGBOX = "exp((2+cos(x/2)*cos(y/2))^5)"
 ROSENBROCK = "exp(-(1-x)^2-100*(y-x^2)^2)"
 RING = "exp(-(hypot(x,y)-0.7)^2/(2*0.005^2))"
@@ -52,7 +52,7 @@ class HardIntegrals(ProgramTest):
             self.honest(8.6646126941712473e-163, f"exp(-375-(x^2+y^2)/2) {limits}")
 
     def test_error_of_equal_values_is_not_zero(self):
-        """Features that are rarely hit."""
+        """Few or no samples fall where the indicator is zero."""
         for method in "basic", "quasi", "stratified", "vegas":
             self.honest(0.999879, f"x>0.000121 --over x=0:1 --method {method} --evaluations 2000")
 

@@ -1,6 +1,6 @@
 """A run that is killed by SIGKILL at random moments and resumed equals an uninterrupted one bit for bit.
 
-Half of the kills come after a random time, half at a random call on a file: in the middle of writing a checkpoint.
+Half of the kills come after a random time, half at a random call on a file, while a checkpoint is written.
 MONTELUX_KILLS: how often each case is killed; MONTELUX_KILL_SEED: other moments.
 """
 
@@ -12,11 +12,11 @@ import signal
 import subprocess
 import time
 
-from program import FAULT_LIBRARY, PROGRAM, SKY, ProgramTest, read, scene, skip_unless, without_seconds
+from program import FAULT_LIBRARY, PROGRAM, SKY, ProgramTest, read, scene, skip_without_faults, without_seconds
 
 KILLS = int(os.environ.get("MONTELUX_KILLS", 17))
 SEED = int(os.environ.get("MONTELUX_KILL_SEED", 1))
-CALLS = 90  # on files, of a run
+CALLS = 90  # file operations of a run, about
 
 
 class Run:
@@ -43,17 +43,13 @@ class Run:
 
 class KillResume(ProgramTest):
     @classmethod
-    def setUpClass(cls):
-        skip_unless(os.path.exists(FAULT_LIBRARY), f"{FAULT_LIBRARY} is not built")
-        super().setUpClass()
-
-    @classmethod
     def prepare(cls):
+        skip_without_faults()
         scene("ball", f'{SKY} Material "diffuse" Shape "sphere"', 32, 24)
 
     def survives(self, output, line):
-        """Kills the command, which resumes from `state` if that is there, until it was killed often enough; the output
-        of each run that ended is compared with that of the uninterrupted one."""
+        """Kills the command KILLS times; each start resumes from `state` if it exists. The output of every run that
+        ends is compared with that of an uninterrupted one."""
         command = line.split()
         for folder in "unbroken", "broken":
             shutil.rmtree(folder, ignore_errors=True)
@@ -71,7 +67,7 @@ class KillResume(ProgramTest):
             how = {} if enough else {"call": 1 + int(moment * CALLS)} if attempt % 2 else {"seconds": moment * seconds}
             run = Run("broken", command, **how)
             state = f"killed {killed} times, now {run.kill}: exit code {run.code}: {run.messages}"
-            # The newest checkpoint is never damaged.
+            # The newest checkpoint must never be damaged, nor reported so.
             self.assertNotRegex(run.messages, "montelux: (warning|error)", state)
             self.assertIn(run.code, (0, -signal.SIGKILL), state)
             if run.code == 0:

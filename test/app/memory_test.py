@@ -5,7 +5,7 @@ import re
 from program import ProgramTest, write
 
 FEW, MANY = 16, 16384
-SIZE = 2048  # sky; fluctuations of the page count are below the tolerance for a picture of this size
+SIZE = 2048  # pixels of the sky; at this size the page count fluctuates by less than the tolerance
 TOLERANCE = 1.01
 
 
@@ -17,12 +17,13 @@ class Memory(ProgramTest):
               'LightSource "infinite" "string filename" "sky.pfm"\nShape "sphere"\n')  # fmt: skip
 
     def peak(self, spp, options):
-        """MiB of one render."""
+        """Peak memory of one render in MiB."""
         text = self.expect(0, "peak memory", f"render scene.pbrt --spp {spp} --threads 1 --stats -o out.exr {options}")
         return float(re.search(r"^peak memory\s+(\S+)", text, re.M)[1])
 
     def check(self, options):
-        """Kernels count pages per processor in batches, so peaks fluctuate between runs; growth shows in every run."""
+        """Compares the least peaks of several runs: kernels count pages in batches, so single peaks fluctuate, while
+        growth shows in every run."""
         few = many = float("inf")
         for runs in range(1, 5):
             few = min(few, self.peak(FEW, options))

@@ -7,7 +7,7 @@ import subprocess
 
 from program import PROGRAM, SKY, ProgramTest, has_command, scene, skip_unless
 
-# Containers and small machines: as root, and more ranks than processors.
+# Options for containers and small machines: run as root, more ranks than processors.
 os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 LAMP = ('AttributeBegin Translate 0 3 1 AreaLightSource "diffuse" "rgb L" [9 9 9] Shape "sphere" "float radius" 0.3 '
         "AttributeEnd")  # fmt: skip
@@ -37,7 +37,7 @@ class MpiTest(ProgramTest):
 
     @classmethod
     def background(cls, n, line, *words, before=()):
-        """A job of n ranks, each of which runs the program, behind the words `before`."""
+        """Starts a job of n ranks of the program, each prefixed by the words `before`."""
         command = ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", str(n), *before, PROGRAM]
         return cls.started([*command, *line.split(), *words])
 

@@ -1,4 +1,4 @@
-"""MPI jobs of which a rank is killed, hangs or gets a signal: they end with a message, and resume to the same bits."""
+"""MPI jobs in which a rank is killed, hangs or gets a signal end with a message, and resume to the same bits."""
 
 import os
 import signal
@@ -19,7 +19,7 @@ class FaultTest(MpiTest):
         remove("state", "state.previous", "many.exr")
 
     def saving(self, n, line):
-        """A job that has written its checkpoint."""
+        """Starts a job and waits for its first checkpoint."""
         job = self.background(n, line)
         self.until(lambda: os.path.exists("state"), "a checkpoint", job=job)
         return job
@@ -58,10 +58,10 @@ class KilledRanks(FaultTest):
                 outcome = self.ended_within(job, 10)
                 self.assertNotEqual(outcome.code, 0, outcome)
                 self.assertIn("signal 9", outcome.text)
-                self.resumed(2, WHOLE)  # to other bits: the killed rank may have been further
+                self.resumed(2, WHOLE)  # the bits may differ: the killed rank may have been ahead
 
     def kill_and_resume(self, line, n, victim):
-        """Kills a rank at the first checkpoint. A render that ends before it is repeated."""
+        """Kills a rank at the first checkpoint; repeated where the render ends before that."""
         self.quietly(f"{line} -o one.exr")
         for _ in range(5):
             self.clear()
@@ -87,7 +87,7 @@ class KilledRanks(FaultTest):
 
 class Signals(FaultTest):
     def test_picture_and_checkpoint_are_written(self):
-        """A signal to mpirun, as from Ctrl-C, and to a single rank."""
+        """The signal goes to mpirun, as from Ctrl-C, or to a single rank."""
         for target in "mpirun", 0, 1:
             with self.subTest(target):
                 self.clear()
@@ -112,8 +112,8 @@ class HangingRanks(FaultTest):
         self.assertIn("error: rank 1 has not answered for", outcome.text)
         self.expect(0, '"interrupted" = 1', "info many.exr")
 
-    def test_job_ends_where_the_rank_has_not_built_the_scene(self):
-        """Rank 0 reads it first, and renders."""
+    def test_job_ends_before_the_rank_has_built_the_scene(self):
+        """Rank 0 reads the scene first, and renders."""
         scene("slow", f"{SKY} " + 'Shape "sphere" "float radius" 0.01\n' * 250000, 70, 50)
         job = self.saving(2, "render slow.pbrt --spp 1000000 --adaptive on --threads 1 -o many.exr --checkpoint state"
                              " --checkpoint-every 0.05 --rank-timeout 2")  # fmt: skip

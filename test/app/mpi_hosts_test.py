@@ -1,5 +1,5 @@
-"""A job over three hosts, which are network namespaces with names and addresses of their own: the bits of one process,
-and a host that vanishes costs no more than the time since the last checkpoint."""
+"""A job over three hosts, which are network namespaces with their own names and addresses. Its picture has the bits of
+one process, and after the loss of a host it resumes from the last checkpoint."""
 
 import os
 import subprocess
@@ -22,7 +22,7 @@ def on_host(k, *words):
 
 
 def make_hosts():
-    """The message of the first command that fails."""
+    """Creates the namespaces; returns the message of the first command that fails."""
     commands = [f"link add {NAME} type bridge", f"link set {NAME} up"]
     for k in 1, 2, 3:
         host = f"{NAME}-{k}"
@@ -79,7 +79,7 @@ exec ip netns exec {NAME}-$k unshare --uts sh -c "hostname {NAME}-$k; $*"
 
     @classmethod
     def hosts(cls, addresses, command):
-        """A job with one process on each of those hosts."""
+        """Starts a job with one process on each of these hosts."""
         return cls.started([
             "ip", "netns", "exec", f"{NAME}-1", "unshare", "--uts", "sh", "-c", f'hostname {NAME}-1; exec "$@"', "-",
             "timeout", "-k", "1", "60", "mpirun", "--mca", "plm_rsh_agent", os.path.abspath("agent"),
@@ -88,7 +88,7 @@ exec ip netns exec {NAME}-$k unshare --uts sh -c "hostname {NAME}-$k; $*"
             "-n", str(len(addresses)), *command])  # fmt: skip
 
     def attempt(self, command, unplugged):
-        """A render whose third host vanishes behind the first checkpoint: its output, or None where it ended before."""
+        """The outcome of a render whose third host vanishes after the first checkpoint; None where it ended before."""
         remove("state", "state.previous", "many.exr")
         on_host(3, "ip", "link", "set", "eth0", "up")
         job = self.hosts(ADDRESSES, [*command, "--rank-timeout", "2"])
@@ -96,7 +96,7 @@ exec ip netns exec {NAME}-$k unshare --uts sh -c "hostname {NAME}-$k; $*"
         begin = time.monotonic()
         if unplugged:
             on_host(3, "ip", "link", "set", "eth0", "down")
-            # mpirun itself may wait for that host for long; the picture is written before the message.
+            # mpirun may wait long for the lost host; the picture is written before the message.
             while UNHEARD not in job.output() and job.runs() and time.monotonic() - begin < 30:
                 time.sleep(0.1)
             for k in 1, 2, 3:
@@ -115,7 +115,7 @@ exec ip netns exec {NAME}-$k unshare --uts sh -c "hostname {NAME}-$k; $*"
         self.quietly(f"render ball.pbrt {options} -o one.exr")
         line = "render ball.pbrt --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.05 --resume"
         command = [PROGRAM, *line.split(), *options.split()]
-        waited = 0  # once MPI itself may keep a render waiting
+        waited = 0  # MPI may block a render without a message; allowed once
         for _ in range(5):
             outcome = self.attempt(command, unplugged)
             if outcome and unplugged and UNHEARD not in outcome.text and not os.path.exists("many.exr"):
@@ -136,6 +136,6 @@ exec ip netns exec {NAME}-$k unshare --uts sh -c "hostname {NAME}-$k; $*"
     def test_host_whose_processes_end(self):
         self.check("--spp 2000 --adaptive on", False)
 
-    def test_host_of_which_nothing_is_heard(self):
-        """The host works on."""
+    def test_host_that_is_cut_off(self):
+        """The host itself continues to work."""
         self.check("--spp 256 --integrator bidirectional", True)

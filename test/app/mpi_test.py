@@ -1,4 +1,4 @@
-"""Renders and integrals by MPI ranks: the bits of one process, and one message for a mistake."""
+"""Renders and integrals by MPI ranks: results equal those of one process, and errors are printed once."""
 
 import itertools
 
@@ -16,7 +16,7 @@ EMPTY_CROP = "--crop 0.5001,0.5002,0,1"
 
 class Pictures(MpiTest):
     def assert_bits(self, options, counts, scene="ball"):
-        """Ranks make the picture of one process with more threads."""
+        """Compares the picture of the ranks with that of one process with more threads."""
         with self.subTest(options):
             self.quietly(f"render {scene}.pbrt {options} --threads 7 -o one.exr")
             for n in counts:
@@ -42,7 +42,7 @@ class Pictures(MpiTest):
         edited("ball.pbrt", "spectral.pbrt", ('Film "rgb"', 'Film "spectral"'))
         self.assert_bits("--spp 8", [2], "spectral")
 
-    def test_slices_join_to_the_whole(self):
+    def test_merged_slices_equal_the_whole(self):
         options = "render ball.pbrt --spp 40 --sampler independent --quiet"
         for k in 1, 2, 3, 4:
             outcome = self.ranks(2, f"{options} --slice {k}/4 --threads 1 -o part{k}.exr")
@@ -59,7 +59,7 @@ class Pictures(MpiTest):
 
 
 class Integrals(MpiTest):
-    def test_digits_of_one_process(self):
+    def test_integrals_equal_those_of_one_process(self):
         formulas = {"basic": "sin(x)*y+exp(-40*(z-0.5)^2)", "vegas": "1/(x+y+z)", "cubature": "x*y*z"}
         for (method, formula), n in itertools.product(formulas.items(), (2, 3)):
             with self.subTest(method, ranks=n):
@@ -84,8 +84,8 @@ class Mistakes(MpiTest):
             with self.subTest(line):
                 self.assert_once(self.ranks(n, line), code, text)
 
-    def test_message_of_rank_0_is_printed_even_if_it_is_the_last(self):
-        """Launchers end the job with the first rank that fails."""
+    def test_message_of_rank_0_is_printed_if_it_fails_last(self):
+        """Launchers kill the job as soon as one rank fails."""
         late = ["sh", "-c", '[ "$OMPI_COMM_WORLD_RANK" = 1 ] || sleep 2; exec "$@"', "-"]
         for line in "render ball.pbrt --spp none", "integrate x* --over x=0:1":
             with self.subTest(line):
@@ -93,7 +93,7 @@ class Mistakes(MpiTest):
                 self.assert_once(self.ranks(3, line, before=late), alone.code, alone.text.splitlines()[0])
 
     def test_mistake_that_rank_1_alone_finds(self):
-        """The rank finds it when it builds the scene."""
+        """Rank 1 fails while it builds the scene."""
         other = ["sh", "-c", f'[ "$OMPI_COMM_WORLD_RANK" != 1 ] || set -- "$@" {EMPTY_CROP}; exec "$@"', "-"]
         outcome = self.ranks(3, "render ball.pbrt --spp 40 -o alone.exr", before=other)
         self.assert_once(outcome, 1, "montelux: error: rank 1: ")

@@ -1,4 +1,4 @@
-"""Pictures after the render: convert with tone curves and exposures, info of scenes and textures, denoise."""
+"""Commands on pictures: convert with tone curves and exposures, info of scenes and textures, denoise."""
 
 import itertools
 import json
@@ -140,7 +140,7 @@ NamedMaterial "red" {SKY} Shape "loopsubdiv" "integer levels" 4 "point3 P" [0 0 
         0 again.pfm $ render other/again.pbrt -o again.pfm
         full.pfm == again.pfm
     """)
-    # Syntax of pbrt with extensions holds all that the picture of a textured model needs.
+    # Extended pbrt syntax describes textured models completely.
     test_converted_model_has_the_same_picture = steps("""
         0 model.gltf has no camera and no lights: the studio is written with it $ convert model.gltf model.pbrt
         0 model.exr $ render model.gltf --spp 4 --resolution 32x24 -o model.pfm -o model.exr
@@ -162,7 +162,7 @@ NamedMaterial "red" {SKY} Shape "loopsubdiv" "integer levels" 4 "point3 P" [0 0 
         0 1024 primitives $ info noname
     """)
 
-    def test_converted_model_loses_nothing(self):
+    def test_converted_model_gives_the_same_picture(self):
         self.assertNotIn("warning", self.expect(0, "", "convert model.gltf whole.pbrt"))
 
     def test_info_of_textures(self):
@@ -193,7 +193,7 @@ class DenoiserMissing(ProgramTest):
     """)
 
     def test_error_comes_before_the_render(self):
-        """The render would take hours."""
+        """The test would time out if the scene were rendered first."""
         write("text.so", "text\n")
         no_function = "this is not Open Image Denoise 1.4 or newer: it has no function oidnNewDevice"
         for library, text in ("no.so", "cannot be loaded"), ("text.so", "cannot be loaded"), ("libm.so.6", no_function):
@@ -221,7 +221,7 @@ class Denoiser(ProgramTest):
                    "render ok.pbrt --denoise -o both.exr -o both.pfm -o both.png")  # fmt: skip
 
     def rows(self, name, channels):
-        """Lines of `info` for channels."""
+        """Lines of `info` on these channels."""
         return re.findall(rf"(?m)^(?:{channels}) .*", self.output(f"info {name}"))
 
     def test_file_has_the_layers_of_the_render_and_the_denoised_one(self):
@@ -230,7 +230,7 @@ class Denoiser(ProgramTest):
         channels = r"R|G|B|stderr\.[RGB]|albedo\.[RGB]|N\.[XYZ]|samples"
         self.assertEqual(self.rows("both.exr", channels), self.rows("ok.exr", channels))
 
-    # The picture of the command denoise is the same, on any number of threads.
+    # `denoise` gives the picture of `render --denoise`, for any number of threads.
     test_other_formats_show_the_denoised_picture = steps("""
         0 with albedo and normal $ denoise ok.exr -o later.pfm -o later.png -o later.exr --threads 1
         both.pfm == later.pfm
@@ -251,12 +251,12 @@ class Denoiser(ProgramTest):
         1 needs the channels R, G and B, but there are Y $ denoise grey.pfm -o x.exr
     """)
 
-    def test_denoising_twice_does_not_double_the_layers(self):
+    def test_denoising_again_replaces_the_layers(self):
         self.expect(0, "twice.exr", "denoise ok.exr -o twice.exr")
         self.expect(0, "twice.exr", "denoise twice.exr -o twice.exr")
         self.expect(0, "32 x 24 pixels", "info twice.exr")
         self.assertEqual(len(self.rows("twice.exr", r"denoised\..")), 3)
 
-    def test_render_that_is_stopped_is_saved_as_it_is(self):
+    def test_interrupted_render_is_saved_without_denoising(self):
         job = self.start("render long.pbrt --denoise -o stopped.exr")
         self.assertIn("stopped before the end, not denoised", self.interrupted(job, works=1.5))

@@ -20,6 +20,7 @@ import subprocess
 import sys
 import tempfile
 import termios
+import threading
 import time
 import unittest
 from pathlib import Path
@@ -31,6 +32,8 @@ SHARED = Path(os.path.abspath(os.environ.get("MONTELUX_SHARED") or ROOT.parent /
 FAULT_LIBRARY = os.path.join(os.path.dirname(PROGRAM), "libmontelux_fault_injection.so")
 NAN, INFINITE = float("nan"), float("inf")
 ROW = re.compile(r"(\d+) (?:(.*) )?\$(?: (.*))?")
+# Formats of scenes, as error messages list them
+FORMATS = "pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read"
 SKY = 'LightSource "infinite" "rgb L" [1 1 1]'
 # A model (OBJ)
 TENT = "v -1 0 -1\nv 1 0 -1\nv 1 0 1\nv -1 0 1\nv 0 2 0\nf 1 2 3 4\nf 1 5 2\nf 2 5 3\nf 3 5 4\nf 4 5 1\n"
@@ -64,7 +67,7 @@ def remove(*names):
 
 
 def edited(name, new, *changes):
-    """Writes `new`: a text file with (pattern, replacement) made in it, each of which must change something."""
+    """Writes a copy of a text file with (pattern, replacement) applied; each must match."""
     text = read(name).decode()
     for pattern, replacement in changes:
         text, count = re.subn(pattern, replacement, text)
@@ -73,7 +76,7 @@ def edited(name, new, *changes):
 
 
 def scene(name, world, width=8, height=6, spp=4):
-    """NAME.pbrt, whose output is NAME.exr. The world begins in line 6."""
+    """Writes NAME.pbrt, whose output is NAME.exr. The world begins in line 6."""
     write(name + ".pbrt", f"""Film "rgb" "integer xresolution" {width} "integer yresolution" {height}
   "string filename" "{name}.exr"
 Sampler "independent" "integer pixelsamples" {spp}
@@ -84,32 +87,32 @@ WorldBegin
 
 
 def pfm(name, width, height, *values, channels=3):
-    """A picture of floats, from the bottom row up; values are repeated until it is full."""
+    """Writes a PFM, bottom row first; the values are repeated to fill it."""
     floats = itertools.islice(itertools.cycle(values), channels * width * height)
     write(name, b"P%c\n%d %d\n-1\n" % (b"F" if channels == 3 else b"f", width, height)
           + b"".join(struct.pack("<f", value) for value in floats))  # fmt: skip
 
 
 def read_pfm(name):
-    """(width, height, floats) of a colour PFM, from the bottom row up."""
+    """(width, height, floats) of a colour PFM, bottom row first."""
     width, height, data = re.fullmatch(rb"PF\s(\d+)\s(\d+)\s-1\S*\n(.*)", read(name), re.S).groups()
     return int(width), int(height), struct.unpack(f"<{3 * int(width) * int(height)}f", data)
 
 
 def csv_rows(text):
-    """(names of columns, rows of numbers) of CSV."""
+    """(names of columns, rows of numbers) of a CSV text."""
     first, *lines = text.splitlines()
     return first.split(","), [[float(word) for word in line.split(",")] for line in lines]
 
 
 def table_lines(text):
-    """Lines without comments; one that begins with $ or & goes on with the one before."""
+    """Lines without comments; a line that begins with $ or & continues the line above."""
     lines = map(str.strip, re.sub(r"\n *([$&])", r" \1", text).strip().split("\n"))
     return [line for line in lines if not line.startswith("#")]
 
 
 def without_seconds(text):
-    """Lines of bytes or text, without those that say how long something took."""
+    """Lines of bytes or text, except those that contain "seconds"."""
     return [line for line in text.splitlines() if (b"seconds" if isinstance(text, bytes) else "seconds") not in line]
 
 
@@ -126,12 +129,16 @@ def skip_unless(condition, reason):
         raise unittest.SkipTest(reason)
 
 
+def skip_without_faults():
+    skip_unless(os.path.exists(FAULT_LIBRARY), f"{FAULT_LIBRARY} is not built")
+
+
 class Outcome(NamedTuple):
-    """The end of a program: its exit code (below 0: minus the signal that ended it) and what it printed."""
+    """Exit code of a program (minus the number of the signal that ended it) and its output."""
 
     command: str
     code: int
-    text: str  # with the errors, unless they are apart
+    text: str  # standard output and, unless kept apart, standard error
     errors: str = ""
 
     def __str__(self):
@@ -139,7 +146,7 @@ class Outcome(NamedTuple):
 
 
 class Job:
-    """A program that runs, whose output and errors can be read meanwhile."""
+    """A running program, whose output can be read at any time."""
 
     def __init__(self, command, environment=None, stdout=None, **how):
         self.printed = tempfile.TemporaryFile()
@@ -155,7 +162,7 @@ class Job:
         return self.process.poll() is None
 
     def ended(self, seconds=60):
-        """The outcome, once it has ended by itself."""
+        """Waits for its end and returns the outcome."""
         try:
             self.process.wait(seconds)
         except subprocess.TimeoutExpired:
@@ -168,7 +175,7 @@ class Job:
         self.process.wait()
 
     def works(self, seconds):
-        """Whether it has taken so much CPU time, and would heed signals."""
+        """Whether it has used this much CPU time and handles SIGINT."""
         with contextlib.suppress(OSError):
             caught = re.search(r"SigCgt:\s*(\w+)", Path(f"/proc/{self.pid}/status").read_text())[1]
             fields = Path(f"/proc/{self.pid}/stat").read_text().rpartition(")")[2].split()
@@ -178,9 +185,9 @@ class Job:
 
 
 class ProgramTest(unittest.TestCase):
-    """Tests that share a scratch folder, in which they run; `prepare` fills it.
+    """Tests that run in a shared scratch folder, which `prepare` fills.
 
-    A command is a line, which is split as a shell does, and words that are taken as they are.
+    A command is a line that is split as by a shell, followed by words that are not split.
     """
 
     maxDiff = None
@@ -200,8 +207,9 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def started(cls, command, **how):
-        """A Job, which does not outlive the tests of the class."""
+        """Starts a Job that is killed, if still running, after the tests of the class."""
         job = Job(command, **how)
+        cls.addClassCleanup(job.printed.close)
         cls.addClassCleanup(job.kill)
         return job
 
@@ -211,7 +219,7 @@ class ProgramTest(unittest.TestCase):
 
     @staticmethod
     def outcome(line, *words, seconds=60, apart=False, environment=None, **how):
-        """Runs the program; `apart` keeps its errors apart from its output."""
+        """Runs the program; `apart` separates standard error from standard output."""
         command = [PROGRAM, *shlex.split(line), *map(str, words)]
         shown = shlex.join(["montelux", *command[1:]])
         try:
@@ -225,7 +233,8 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def expect(cls, code, text, line, *words, **how):
-        """Output of the program: has the text, or all of TEXT & TEXT ..., and one error message if the code is 1."""
+        """Runs the program and returns its output. Checks the exit code, that the output contains TEXT, or each of
+        TEXT & TEXT ..., and that there is exactly one error message if the code is 1."""
         outcome = cls.outcome(line, *words, **how)
         printed = outcome.text + outcome.errors
         if outcome.code != code:
@@ -238,7 +247,7 @@ class ProgramTest(unittest.TestCase):
         return outcome.text
 
     def expect_each(self, table, prefix=""):
-        """Independent rows of (code, text, line, words ...), or text with lines CODE TEXT $ LINE."""
+        """Expects each row (code, text, line, words ...), or each line CODE TEXT $ LINE of a text, as a subtest."""
         if isinstance(table, str):
             table = [ROW.fullmatch(line).groups("") for line in table_lines(table)]
         for code, text, line, *words in table:
@@ -247,7 +256,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def take(cls, text):
-        """Takes steps."""
+        """Runs the lines of `steps` one after the other."""
         comparisons = {"==": cls.assert_same, "!=": cls.assert_differ, "~": cls.assert_same_pixels}
         for line in table_lines(text):
             words = line.split()
@@ -260,7 +269,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def output(cls, line, *words, **how):
-        """Standard output of a command that succeeds."""
+        """Standard output of a command that must succeed."""
         return cls.expect(0, "", line, *words, apart=True, **how)
 
     @classmethod
@@ -272,29 +281,33 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def quietly(cls, line, *words, **how):
-        """Runs a command with --quiet, which succeeds and prints nothing."""
+        """Runs a command with --quiet, which must succeed and print nothing."""
         outcome = cls.outcome(line + " --quiet", *words, **how)
         if outcome.code != 0 or outcome.text:
             raise AssertionError(f"success without a word is expected. {outcome}")
 
     @staticmethod
     def on_terminal(line, columns=80):
-        """The outcome of the program on a terminal of so many columns."""
+        """The outcome of the program on a terminal of this width."""
         leader, follower = pty.openpty()
         with open(leader, "rb", buffering=0) as screen:
             fcntl.ioctl(follower, termios.TIOCSWINSZ, struct.pack("4H", 24, columns, 0, 0))
             process = subprocess.Popen([PROGRAM, *shlex.split(line)], stdin=follower, stdout=follower, stderr=follower,
                                        start_new_session=True)  # fmt: skip
             os.close(follower)
+            limit = threading.Timer(60, process.kill)
+            limit.start()
             text = b""
             with contextlib.suppress(OSError):  # the program has ended
                 while chunk := screen.read(1 << 16):
                     text += chunk
-            return Outcome(f"montelux {line}", process.wait(60), text.decode(errors="replace"))
+            code = process.wait()
+            limit.cancel()
+            return Outcome(f"montelux {line}", code, text.decode(errors="replace"))
 
     @staticmethod
     def until(condition, what, job, seconds=30):
-        """Waits until the condition holds, and returns its value; not longer than the job runs."""
+        """Waits for a true value of the condition and returns it; fails if the job ends before."""
         end = time.monotonic() + seconds
         while not (value := condition()):
             if not job.runs() or time.monotonic() > end:
@@ -305,7 +318,7 @@ class ProgramTest(unittest.TestCase):
         return value
 
     def interrupted(self, job, number=signal.SIGINT, works=0.4, seconds=INFINITE):
-        """Output of a job which gets the signal once it works, and ends with 130 within some time."""
+        """Sends the signal after `works` s of CPU time; expects exit code 130 within `seconds`; returns the output."""
         self.until(lambda: job.works(works), f"{works} s of work", job)
         begin = time.monotonic()
         job.signal(number)
@@ -316,7 +329,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def assert_same(cls, a, b, message="", most=0):
-        """Two files have the same bytes, but for a few."""
+        """Fails unless the files have the same size and differ in at most `most` bytes."""
         x, y = read(a), read(b)
         count = 0 if x == y else bytes_that_differ(x, y)
         if count > most or len(x) != len(y):
@@ -324,7 +337,7 @@ class ProgramTest(unittest.TestCase):
 
     @classmethod
     def assert_same_but_seconds(cls, a, b, message=""):
-        """Two EXR files are equal, except for the render time in their headers."""
+        """Compares EXR files, ignoring the render time in their headers."""
         cls.assert_same(a, b, message, most=4)
 
     @classmethod
@@ -347,13 +360,13 @@ class ProgramTest(unittest.TestCase):
 
 
 def steps(text):
-    """A test whose lines need those before them: CODE TEXT $ LINE expects this, A == B that two files have the same
-    bytes, A != B that they differ, A ~ B that pictures have the same pixels, `no A B` that files are absent."""
+    """A test of consecutive lines: CODE TEXT $ LINE runs a command, A == B expects files of the same bytes, A != B of
+    different bytes, A ~ B pictures of the same pixels, and `no A B` the absence of files."""
     return lambda self: self.take(text)
 
 
 def each(table, prefix=""):
-    """A test of independent lines, or rows of (code, text, line, words ...)."""
+    """A test of independent lines or rows, see expect_each()."""
     return lambda self: self.expect_each(table, prefix)
 
 
@@ -366,7 +379,7 @@ class Result(unittest.TextTestResult):
 
 
 def run(names):
-    """Runs tests; the exit code is 77 where none passed because they were skipped."""
+    """Runs tests; returns 0, 1 after failures, or 77 if all were skipped."""
     tests = unittest.defaultTestLoader.loadTestsFromNames(names)
     result = unittest.TextTestRunner(resultclass=Result, verbosity=2).run(tests)
     return 0 if result.passed and result.wasSuccessful() else 77 if result.skipped and result.wasSuccessful() else 1

@@ -1,4 +1,4 @@
-"""Pictures in and out of the render command."""
+"""Files that `render` reads and writes."""
 
 import os
 import resource
@@ -6,9 +6,7 @@ import shutil
 import signal
 import subprocess
 
-from program import NAN, PROGRAM, SKY, ProgramTest, pfm, read, scene, write
-
-READ = "pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read"
+from program import FORMATS, NAN, PROGRAM, SKY, ProgramTest, pfm, read, scene, write
 
 
 class Outputs(ProgramTest):
@@ -18,9 +16,9 @@ class Outputs(ProgramTest):
         scene("long", f'{SKY} Shape "sphere"', 2000, 2000, 1000000)
 
     def test_outputs_are_checked_before_the_render(self):
-        """The render would take hours."""
+        """The test would time out if the scene were rendered first."""
         os.mkdir("folder.exr")
-        name = "x" * 252  # with .exr it has a letter too many
+        name = "x" * 252  # one letter too long with .exr
         self.expect_each(f"""
             1 nowhere/x.exr: cannot be written $ -o nowhere/x.exr
             1 cannot be written $ -o long.pbrt/x.exr
@@ -43,15 +41,15 @@ class Outputs(ProgramTest):
         self.expect(0, "8 x 6 pixels", "render ok.pbrt -o picture.exr --checkpoint ok.state")
         write("collada.xml", '<?xml version="1.0"?>\n<COLLADA version="1.4.1"/>')
         self.expect_each(f"""
-            1 picture.exr: this is an OpenEXR picture; {READ} $ render picture.exr
-            1 ok.state: this is a checkpoint of Montelux; {READ}: give the scene itself $ render ok.state
+            1 picture.exr: this is an OpenEXR picture; {FORMATS} $ render picture.exr
+            1 ok.state: this is a checkpoint of Montelux; {FORMATS}: give the scene itself $ render ok.state
             1 collada.xml: this is a COLLADA scene; pbrt-v4 $ render collada.xml
         """)
         shutil.copy("ok.pbrt", "any name")
         self.expect(0, "8 x 6 pixels", "render 'any name' -o picture.exr")
 
     def on_small_disk(self, size, line):
-        """Output of a render that fails since no file may be larger."""
+        """Output of a render that fails because of a limit on file sizes."""
         def limit():
             signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
             resource.setrlimit(resource.RLIMIT_FSIZE, (size, size))
@@ -66,7 +64,7 @@ class Outputs(ProgramTest):
         self.assertEqual(read("limited.exr"), b"old")
         self.assertIn("limited.exr: cannot be written: writing: File too large", text)
 
-    def test_full_disk_does_not_cost_the_other_outputs(self):
+    def test_full_disk_leaves_the_other_outputs(self):
         text = self.on_small_disk(800 * 512, "-o limited.exr -o small.png -o big.pfm -o small.hdr")
         self.assertRegex(text, "error: limited.exr: .*File too large; big.pfm: .*File too large")
         self.assertNotIn("limited.exr: 300", text, "a file that was not written is reported as written")
@@ -77,8 +75,8 @@ class Outputs(ProgramTest):
         with open("/dev/full", "wb") as full:
             self.assertNotEqual(self.start("render ok.pbrt", stdout=full).ended().code, 0)
 
-    def test_messages_do_not_get_into_a_picture(self):
-        """The picture is opened while the standard streams are closed."""
+    def test_messages_are_not_written_into_a_picture(self):
+        """With closed standard streams the file of the picture could get their descriptors."""
         subprocess.run(["sh", "-c", f'exec "{PROGRAM}" render ok.pbrt -o closed.exr >&- 2>&- <&-'], timeout=60)
         self.expect(0, "8 x 6 pixels", "info closed.exr")
 
@@ -102,7 +100,7 @@ class Inputs(ProgramTest):
         pfm("grey.pfm", 1, 1, 1, channels=1)
 
     def use(self, kind, file):
-        """A scene with the picture as a texture or as the environment."""
+        """Writes a scene with the picture as a texture or as the environment."""
         scene("picture", f'LightSource "infinite" "string filename" "{file}" Shape "sphere"'
               if kind == "environment" else f"""{SKY} Texture "t" "spectrum" "imagemap" "string filename" "{file}"
 Material "diffuse" "texture reflectance" "t" Shape "sphere\"""")  # fmt: skip
@@ -123,7 +121,7 @@ Material "diffuse" "texture reflectance" "t" Shape "sphere\"""")  # fmt: skip
                 self.use(kind, file)
                 self.expect(code, text, "render picture.pbrt")
 
-    def test_grey_environment_is_a_white_one(self):
+    def test_environment_of_one_channel_equals_that_of_three(self):
         for name in "one", "grey":
             self.use("environment", f"{name}.pfm")
             self.expect(0, "", f"render picture.pbrt -o by_{name}.pfm")

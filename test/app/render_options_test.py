@@ -1,4 +1,4 @@
-"""Options of the render command: refused values, and effects on the picture."""
+"""Options of `render`: refused values, and effects on the picture."""
 
 import os
 import re
@@ -73,7 +73,7 @@ class Effects(OptionsTest):
     def test_numbers_may_have_an_exponent(self):
         self.expect(0, "20 samples per pixel", "render ok.pbrt --resolution 8x6 --spp 2e1 --seed 1e3 -o twenty.pfm")
 
-    def test_files_say_how_they_were_made(self):
+    def test_files_record_options(self):
         self.expect(0, "32 x 12 pixels, 2 samples per pixel", "render -o a.exr -o a.png -o a.hdr -o a.pfm ok.pbrt"
                     " --resolution 64x48 --spp 2 --seed 18446744073709551615 --sampler halton --crop 0,0.5,0.5,0.75"
                     " --max-depth 3")  # fmt: skip
@@ -88,7 +88,7 @@ class Effects(OptionsTest):
         """)
 
     def test_samplers(self):
-        """The picture depends on the seed, not on the number of threads, and a crop is a part of it."""
+        """The picture depends on the seed but not on threads; a crop equals that part of it."""
         for sampler in "independent", "stratified", "halton", "hammersley", "sobol", "sobol-blue-noise":
             with self.subTest(sampler):
                 line = f"render ok.pbrt --sampler {sampler}"
@@ -143,7 +143,7 @@ Material "diffuse" Shape "bilinearmesh" "point3 P" [-5 -5 -1  5 -5 -1  -5 5 -1  
             1 choose path, bidirectional or metropolis $ --debug-sample 0,0,0
         """, "render ok.pbrt --integrator auto -o refused.exr ")
 
-    def test_resumed_render_keeps_it(self):
+    def test_resumed_render_keeps_the_integrator(self):
         self.quietly("render shaded.pbrt --spp 256 --integrator auto --checkpoint chosen.ckpt -o part.pfm")
         self.expect(0, "272 samples per pixel",
                     "render shaded.pbrt --spp 272 --integrator auto --checkpoint chosen.ckpt --resume -o resumed.exr")
@@ -152,7 +152,7 @@ Material "diffuse" Shape "bilinearmesh" "point3 P" [-5 -5 -1  5 -5 -1  -5 5 -1  
 
 
 class Surfaces(ProgramTest):
-    """Options of surfaces change what they are for, and by default nothing."""
+    """Options of surfaces: each has its effect, and the defaults have none."""
 
     MULTIPLE, SOFT = "--microfacet-scattering multiple", "--shading-terminator soft"
 
@@ -172,7 +172,7 @@ Shape "trianglemesh" "point3 P" [-0.7 -0.7 0  0.7 -0.7 0  0 0.7 0] "integer indi
             self.quietly(f"render rough.pbrt -o two.pfm {change}")
             self.assert_differ("one.pfm", "two.pfm", change)
 
-    def test_header_and_checkpoint_know_them(self):
+    def test_header_and_checkpoint_record_them(self):
         self.quietly(f"render rough.pbrt -o two.exr --checkpoint two.ckpt {self.MULTIPLE} {self.SOFT}")
         info = self.expect(0, '"microfacetScattering" = "multiple"', "info two.exr")
         self.assertIn('"shadingTerminator" = "soft"', info)
@@ -182,7 +182,7 @@ Shape "trianglemesh" "point3 P" [-0.7 -0.7 0  0.7 -0.7 0  0 0.7 0] "integer indi
 
 
 class TextureMemory(OptionsTest):
-    """Textures in a temporary file: the same bits, digest and checkpoints, for any number of threads."""
+    """Textures in a temporary file: pictures, scene hash and checkpoints are unchanged for any number of threads."""
 
     @classmethod
     def prepare(cls):
@@ -216,7 +216,7 @@ Material "diffuse" "texture reflectance" "{filter} {file}" Translate 0.4 0 0.1 S
         self.expect(0, "16 samples per pixel", "render textured.pbrt --spp 16 -o one.exr --checkpoint textured.ckpt"
                     " --resume")  # fmt: skip
 
-    def test_memory_is_told(self):
+    def test_memory_report_names_the_temporary_file(self):
         text = self.expect(0, "MiB in a temporary file", "render textured.pbrt --memory --texture-memory 0.5G")
         self.assertIn("2 images, ", text)
 

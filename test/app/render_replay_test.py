@@ -1,10 +1,10 @@
-"""Replayed samples: refused arguments, the printed record, and the option that the message on bad samples gives."""
+"""Replayed samples: refused arguments, the printed record, and the option named by the message on bad samples."""
 
 import re
 
 from program import SKY, ProgramTest, read_pfm, scene
 
-# A metal whose index overflows is not a number.
+# A metal whose index of refraction overflows, so that its radiance is NaN.
 METAL = ('Material "conductor" "spectrum eta" [300 1e30 900 1e30] "spectrum k" [300 1 900 1]'
          ' "float roughness" 0.3')  # fmt: skip
 OPTION = r"(?m)--debug-sample [0-9,]*$"  # at the end of the message on bad samples
@@ -45,7 +45,7 @@ class Replay(ProgramTest):
         self.assert_absent("ok.exr", "picture.exr")
 
     def test_radiance_of_a_lamp_that_no_path_can_hit_has_a_density(self):
-        """The lamp is no point light."""
+        """The lamp is not a point light."""
         scene("hidden", """AttributeBegin AreaLightSource "diffuse" "bool twosided" true Translate 0 0 3
     Shape "disk" "float alpha" 0 AttributeEnd Shape "sphere\"""", 64, 48)
         text = self.expect(0, "per steradian; weight 1", "render hidden.pbrt --strategy bsdf --debug-sample 32,20,0")
@@ -57,7 +57,7 @@ class Replay(ProgramTest):
         replayed = re.search(r"the pixel gets (.*)", text)[1].split()[:3]
         self.assertEqual([f"{float(v):.5g}" for v in replayed], [f"{v:.5g}" for v in read_pfm("one.pfm")[2][-3:]])
 
-    def test_message_on_bad_samples_ends_with_the_option_that_replays_one(self):
+    def test_message_on_bad_samples_names_the_option_that_replays_one(self):
         scene("bad", f'{SKY} {METAL} Shape "sphere"')
         text = self.expect(0, "not a number, is sample", "render bad.pbrt")
         self.assertRegex(text, OPTION)

@@ -1,4 +1,4 @@
-"""A signal saves the picture so far, or leaves nothing behind."""
+"""Signals during a render: the picture so far is saved, or nothing is left."""
 
 import os
 import signal
@@ -20,7 +20,7 @@ class Signals(ProgramTest):
                     text = self.interrupted(job, number, seconds=2)
                     self.assertIn("stopped before the end", text)
                     info = self.expect(0, '"interrupted" = 1', "info long.exr")
-                    # Pixels without samples are 0.
+                    # Pixels without samples are black.
                     rows = [line.split() for line in info.splitlines() if line[:2] in ("R ", "G ", "B ")]
                     self.assertEqual(len(rows), 3, info)
                     for row in rows:
@@ -33,8 +33,8 @@ class Signals(ProgramTest):
         self.expect(0, '"relativeError": null', "info none.exr --json")
 
     def test_second_signal_ends_at_once_and_leaves_checkpoints(self):
-        """Paths in a sphere without absorption are long, and the first signal waits for those of a pixel. The second
-        one does not count within the same second."""
+        """The first signal waits for the long paths of a pixel in a sphere without absorption. A second one is ignored
+        within the same second."""
         scene("furnace", '''Texture "slow" "float" "fbm" "integer octaves" 64
 MakeNamedMaterial "white" "string type" "diffuse" "spectrum reflectance" [200 1 900 1]
 Material "mix" "string materials" ["white" "white"] "texture amount" "slow" Shape "sphere" "float radius" 5''', 1, 1)
@@ -43,7 +43,7 @@ Material "mix" "string materials" ["white" "white"] "texture amount" "slow" Shap
         self.expect(0, "4 samples per pixel", f"{furnace} --spp 4")
         before = read("furnace.state")
         os.remove("furnace.exr")
-        job = self.start(f"{furnace} --spp 1000 --resume")  # 4 samples are next
+        job = self.start(f"{furnace} --spp 1000 --resume")  # the next step takes 4 samples
         self.until(lambda: job.works(0.4), "a render", job)
         job.signal(signal.SIGINT)
         time.sleep(0.3)
@@ -80,7 +80,7 @@ Material "mix" "string materials" ["white" "white"] "texture amount" "slow" Shap
         while job.runs():
             if self.being_written(job):
                 job.signal(signal.SIGINT)
-                job.signal(signal.SIGINT)  # the first one alone would only have asked for an early end
+                job.signal(signal.SIGINT)  # the first one alone only requests an early end
                 in_time += 1
         outcome = job.ended()
         self.assertGreaterEqual(in_time, 1, "no signal came in time")

@@ -1,4 +1,4 @@
-"""Renders to an error, to a time, with checkpoints: exit codes, sentences, mistakes."""
+"""Renders with a target error, a time limit and checkpoints: exit codes, messages, wrong usage."""
 
 from program import SKY, ProgramTest, read, scene, write
 
@@ -11,7 +11,7 @@ REACHED = """
     0 time is up $ --time 0.2s
     0 16 samples per pixel $ --time 1h --spp 16
     0 samples were clamped, which removed $ --clamp 0.5
-    # Advice for a cleaner picture.
+    # Advice on options for half the error.
     0 for half the error: --spp 16, about  $
     0 for half the error: --target-error 4%, about  $ --target-error 8%
     0 for half the error: --time 1s $ --time 0.1 --sampler independent
@@ -38,18 +38,18 @@ class TargetTest(ProgramTest):
 
 
 class Targets(TargetTest):
-    def test_sentences(self):
+    def test_reports(self):
         self.expect_each(REACHED, "render ball.pbrt -o x.exr ")
 
-    def test_file_says_how_it_ended(self):
+    def test_file_records_the_reason_of_the_end(self):
         self.expect(0, "target reached", "render ball.pbrt --target-error 2% -o ended.exr")
         self.expect(0, "stoppedBy", "info ended.exr")
 
-    def test_share_of_visible_errors_is_told(self):
+    def test_share_of_visible_errors_is_reported(self):
         text = self.expect(0, "", "render ball.pbrt -o x.exr")
         self.assertRegex(text, r"relative error [0-9.]+ %, visible in [0-9.]+ % of the pixels, ")
 
-    def test_no_advice_where_no_error_is_visible(self):
+    def test_no_advice_without_visible_errors(self):
         scene("even", SKY, 24, 18)
         text = self.expect(0, "visible in none of the pixels", "render even.pbrt --spp 4096 -o x.exr")
         self.assertNotIn("for half the error", text)
@@ -83,7 +83,7 @@ class Checkpoints(TargetTest):
         self.expect(1, "state", f"{resume} --spp 52 -o x.pfm")
         self.assert_absent("x.pfm")
 
-    def test_reason_why_nothing_is_left(self):
+    def test_resume_names_why_nothing_is_left(self):
         for name, option, reason in [
             ("by_error", "--target-error 2%", "the target error is reached already; a smaller --target-error"),
             ("by_time", "--time 0.2", "0.2 s are used up.*; a longer --time"),
@@ -93,7 +93,7 @@ class Checkpoints(TargetTest):
                 self.expect(0, f"{name} is not there yet", line)
                 self.assertRegex(self.expect(0, f"{name}: nothing is left to render: ", line), reason)
 
-    def test_names(self):
+    def test_names_of_files_that_exist(self):
         self.expect(0, "", "render ball.pbrt -o a.pfm")
         self.expect_each("""
             2 the file exists; add --resume $ render ball.pbrt --checkpoint a.pfm -o x.pfm

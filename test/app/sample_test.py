@@ -1,4 +1,4 @@
-"""montelux sample: points of sets and samples of densities, in every format."""
+"""montelux sample: point sets and samples of densities, in every format."""
 
 import os
 import re
@@ -54,7 +54,7 @@ def mean(values):
 
 class SampleTest(ProgramTest):
     def sample(self, line, **how):
-        """Columns of what a command prints, by name."""
+        """The columns that a command prints, by name."""
         names, rows = csv_rows(self.output(f"sample {line}", **how))
         return dict(zip(names, zip(*rows)))
 
@@ -63,7 +63,7 @@ class Points(SampleTest):
     def test_first_sobol_points(self):
         self.assertEqual(self.output("sample --set sobol --n 4 --dim 2"), "u1,u2\n0,0\n0.5,0.5\n0.25,0.75\n0.75,0.25\n")
 
-    def test_every_set_is_spread_over_the_cube(self):
+    def test_every_set_fills_the_cube(self):
         listed = re.search(r"Which points of \[0, 1\)\^d: (.*)", self.output("sample --help"))[1]
         sets = {*re.findall(r"\w+", listed), "halton", "hammersley"}
         self.assertIn("sobol", sets)
@@ -122,8 +122,8 @@ class TrainedDensities(SampleTest):
         cls.output("integrate x*exp(-50*(x-y)^2) --over x=0:1 --over y=-1:2 --method adaptive --evaluations 50k"
                    " --save-density trained.mx --quiet")  # fmt: skip
 
-    def test_uniform_density_is_told(self):
-        """Adaptive trains nothing where uniform points suffice."""
+    def test_uniform_density_is_reported(self):
+        """adaptive does not train where uniform points suffice."""
         self.expect(0, "the density in 'flat.mx' is uniform", "integrate 1+x --over x=0:1 --method adaptive"
                     " --relative-error 0.01 --save-density flat.mx")  # fmt: skip
 
@@ -161,7 +161,7 @@ class TrainedDensities(SampleTest):
     def test_draws_are_limited(self):
         self.expect(3, "only 5 of 100 samples were found in 5 draws", "sample --from trained.mx --n 100 --max-draws 5")
 
-    def test_observables_that_are_no_numbers(self):
+    def test_observables_that_are_not_numbers(self):
         self.expect(0, "have an observable that is not finite",
                     "sample --from trained.mx --histogram sqrt(x-0.5)=0:1:2 --n 1000")  # fmt: skip
 
@@ -215,7 +215,7 @@ class Chains(SampleTest):
                     f"sample log(exp(-(x-20)^2)+exp(-(x+20)^2)) --log --over x=-30:30 {starts}")  # fmt: skip
 
     def test_report_is_of_the_draws_that_are_written(self):
-        """Thinned ones are nearly independent."""
+        """Thinned draws are nearly independent."""
         text = self.expect(0, "", "sample -x^2/2 --log --over x=-inf:inf --n 1000 --thin 50")
         self.assert_near(float(re.search(r"effective samples ([0-9.e+]+)", text)[1]), 4000, 1000)
 
@@ -265,7 +265,7 @@ class Chains(SampleTest):
 
 
 class Constants(SampleTest):
-    """Files of densities keep constants, and the place of a source in C."""
+    """Constants and the path of a C source in files of densities."""
 
     def test_constants_in_formulas(self):
         for one, other in [("--density exp(-k*x) --let k=5 --over x=0:inf --n 3",

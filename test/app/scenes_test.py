@@ -1,11 +1,11 @@
-"""Scenes of all formats: invalid ones, unusual ones, and the options that choose or change what is in them."""
+"""Scenes of all formats: invalid and unusual ones, and options that select or change their content."""
 
 import gzip
 import json
 import os
 
-from program import (GLTF_MOTION, GLTF_TRIANGLE, PROGRAM, SKY, TENT, ProgramTest, each, edited, pfm, read, scene, steps,
-                     write)  # fmt: skip
+from program import (FORMATS, GLTF_MOTION, GLTF_TRIANGLE, PROGRAM, SKY, TENT, ProgramTest, each, edited, pfm, read,
+                     scene, steps, write)  # fmt: skip
 
 PLY = """ply
 format ascii 1.0
@@ -21,12 +21,11 @@ end_header
 0 1 0
 3 0 1 2
 """
-READ = "pbrt-v4, glTF 2.0, Mitsuba 3, OBJ, PLY and STL are read"
 
 
 class BrokenScenes(ProgramTest):
     def broken(self, text, world):
-        """Rendering ends with the text and leaves no picture. The world begins in line 7."""
+        """Expects that a render fails with the text and leaves no picture. The world begins in line 7."""
         with self.subTest(world):
             scene("broken", f"{SKY}\n{world}")
             self.expect(1, text, "render broken.pbrt")
@@ -50,7 +49,7 @@ class BrokenScenes(ProgramTest):
         ]:  # fmt: skip
             self.broken(text, world)
 
-    def test_circles_of_files(self):
+    def test_files_that_include_each_other(self):
         write("a.pbrt", 'Include "b.pbrt"')
         write("b.pbrt", 'Include "a.pbrt"')
         self.expect(1, "b.pbrt:1:1: 'a.pbrt' includes itself", "render a.pbrt")
@@ -87,13 +86,13 @@ class BrokenScenes(ProgramTest):
         write("bad.ply.gz", gzip.compress(PLY.encode())[:60])
         self.broken("the gzip data ends early", world + '.gz"')
 
-    def test_files_that_are_no_scenes(self):
+    def test_files_that_are_not_scenes(self):
         write("empty.pbrt", "")
         self.expect_each([
             (1, "empty.pbrt: the file is empty", "render empty.pbrt"),
             (1, "missing.pbrt: cannot be opened", "render missing.pbrt"),
             (1, "it is a folder", "render ."),
-            (1, f"this is a program; {READ}", "render", PROGRAM),
+            (1, f"this is a program; {FORMATS}", "render", PROGRAM),
             (1, "cannot be opened", "render", ""),
         ])  # fmt: skip
 
@@ -246,7 +245,7 @@ class Mitsuba(ProgramTest):
 
 
 class Models(ProgramTest):
-    """Models by themselves: the studio, and the options that change it for every scene."""
+    """Models without a scene: the studio, and options that change it."""
 
     SMALL = "--resolution 32x24 --spp 8"
     SHOT = f"render tent.obj {SMALL}"
@@ -336,7 +335,7 @@ class Models(ProgramTest):
         2 --environment $ render tent.obj --environment ''
         1 broken.obj:3: the face refers to vertex 3; there are 2 so far $ render broken.obj
         1 empty.obj: the file has no faces $ render empty.obj
-        1 model.usda: this is a USD scene (text); {READ} $ render model.usda
+        1 model.usda: this is a USD scene (text); {FORMATS} $ render model.usda
     """)
     test_materials_and_missing_ones = each(rf"""
         0 models/red.obj:2: there is no file 'other.mtl' in the folder of the OBJ file

@@ -1,4 +1,4 @@
-"""A client of the viewer by the standard library alone, and attacks on it; used by view_test.py and bench/view_cost.py.
+"""A client of the viewer without dependencies, and attacks on it; used by view_test.py and bench/view_cost.py.
 
 Usage: view_client.py URL [CONNECTIONS]   attacks
 """
@@ -15,7 +15,7 @@ import urllib.request
 
 
 class Viewer:
-    """One WebSocket of a viewer's page."""
+    """A WebSocket connection to the viewer."""
 
     def __init__(self, url):
         self.url = url
@@ -60,7 +60,7 @@ class Viewer:
         self.frame(1, json.dumps(message).encode())
 
     def message(self):
-        """The next text, as an object, or the next bytes."""
+        """The next message: an object, or bytes."""
         whole = b""
         while True:
             first, second = self.take(2)
@@ -83,7 +83,7 @@ class Viewer:
                 return json.loads(whole) if kind == 1 else whole
 
     def next(self, kind, test=lambda message: True):
-        """The next message of a type that passes a test."""
+        """The next message of this type that meets the condition."""
         deadline = time.monotonic() + 60
         while time.monotonic() < deadline:
             message = self.message()
@@ -97,7 +97,7 @@ class Viewer:
 
 
 class Picture:
-    """Layers that are put together from the tiles of the protocol."""
+    """Layers assembled from the tiles of the protocol."""
 
     def __init__(self, scene):
         self.scene = scene
@@ -120,8 +120,7 @@ class Picture:
 
 
 def patient_viewer(url):
-    """A Viewer. While attacks fill the program's connections, a new one is closed if its request comes a moment after
-    it: then it is opened again, as by a person who reloads the page."""
+    """A Viewer, opened again while the program closes new connections because attacks take all of them."""
     for _ in range(20):
         try:
             return Viewer(url)
@@ -131,14 +130,14 @@ def patient_viewer(url):
 
 
 def hostile(viewer, count=10000):
-    """Attacks by `count` connections; then one page is served as if nothing were."""
+    """Attacks with `count` connections; then `viewer` must still be answered."""
     address = (viewer.host, viewer.port)
     host = f"Host: {viewer.host}:{viewer.port}\r\n"
     silent, opened = [], 0
     end = time.monotonic() + 6e-4 * count
     while time.monotonic() < end or opened < count:
         s = socket.socket()
-        s.setblocking(False)  # the program lets them wait
+        s.setblocking(False)  # the program does not accept all of them
         s.connect_ex(address)
         opened += 1
         try:
@@ -148,7 +147,7 @@ def hostile(viewer, count=10000):
             elif kind == 1:
                 s.sendall(f"POST / HTTP/1.1\r\n{host}Content-Length: 100000000\r\n\r\n".encode() + b"x" * 100000)
             elif kind == 2:
-                s.sendall(f"GET /page/main.js HTTP/1.1\r\n{host}\r\n".encode())  # never read
+                s.sendall(f"GET /page/main.js HTTP/1.1\r\n{host}\r\n".encode())  # the answer is not read
             elif kind == 3:
                 s.sendall(os.urandom(500))
         except OSError:
@@ -157,7 +156,7 @@ def hostile(viewer, count=10000):
         if len(silent) > 400:
             silent.pop(0).close()
     slow = [patient_viewer(viewer.url) for _ in range(8)]
-    for s in slow:  # ask, and never read
+    for s in slow:  # answers are not read
         s.ask(type="show", layers=["mean", "error", "samples", "relative error"])
         for _ in range(200):
             s.ask(type="pixel", x=0, y=0)

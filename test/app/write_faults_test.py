@@ -1,7 +1,7 @@
-"""Each output is the complete old file or the complete new one, also if a call on a file fails or a kill comes.
+"""After a failed file operation or a kill, each output is the complete old file or the complete new one.
 
-Every call of each command below is made to fail once. MONTELUX_FAULT_KINDS="ENOSPC EIO ..." chooses how
-(test/fault/fault_injection.cpp); "all": in every way.
+Every file operation of each command fails once. MONTELUX_FAULT_KINDS="ENOSPC EIO ..." selects kinds of faults
+(test/fault/fault_injection.cpp); "all" selects every kind.
 """
 
 import os
@@ -9,7 +9,7 @@ import re
 import shutil
 import signal
 
-from program import FAULT_LIBRARY, SKY, ProgramTest, read, scene, skip_unless, without_seconds, write
+from program import FAULT_LIBRARY, SKY, ProgramTest, read, scene, skip_without_faults, without_seconds, write
 
 EVERY_KIND = "ENOSPC EIO EDQUOT EINTR full-disk short kill-before kill-after"
 KINDS = os.environ.get("MONTELUX_FAULT_KINDS", "ENOSPC short kill-before")
@@ -18,22 +18,18 @@ MOST_CALLS = 400
 
 
 def contents(folder):
-    """Files of a folder, by name."""
+    """The contents of the files of a folder, by name."""
     return {entry.name: read(entry.path) for entry in os.scandir(folder) if entry.is_file()}
 
 
 class WriteFaults(ProgramTest):
     @classmethod
-    def setUpClass(cls):
-        skip_unless(os.path.exists(FAULT_LIBRARY), f"{FAULT_LIBRARY} is not built")
-        super().setUpClass()
-
-    @classmethod
     def prepare(cls):
+        skip_without_faults()
         scene("tiny", f'{SKY} Shape "sphere"', 8, 6, 1)
 
     def with_fault(self, call, kind, line):
-        """Runs the command in the folder `work`, the only one where calls are counted: its outcome and the report."""
+        """Runs the command in the folder `work`, where file operations are counted; returns outcome and report."""
         work, report = os.path.abspath("work"), os.path.abspath("report")
         if os.path.exists(report):
             os.remove(report)
@@ -43,14 +39,14 @@ class WriteFaults(ProgramTest):
         return outcome, read(report).decode(errors="replace") if os.path.exists(report) else ""
 
     def fresh(self, old):
-        """Makes the folder `work` anew, with the files that are there before."""
+        """Recreates the folder `work` with the old files."""
         shutil.rmtree("work", ignore_errors=True)
         os.mkdir("work")
         for name, data in old.items():
             write(f"work/{name}", data)
 
     def is_whole(self, name, wanted):
-        """A file is what a run without faults makes. Files with times are read instead."""
+        """Whether a file equals that of a run without faults. EXR files contain times: their pixels are compared."""
         if read(f"work/{name}") == wanted:
             return True
         if not name.endswith(".exr"):
@@ -59,7 +55,7 @@ class WriteFaults(ProgramTest):
         return "RMSE 0, relMSE 0 " in self.outcome(f"compare work/{name} wanted.exr").text
 
     def faults(self, outputs, line, old, check=lambda where: None):
-        """Makes each call go wrong in each way; `check` looks at what is left in `work`."""
+        """Injects each fault at each file operation; `check` examines what is left in `work`."""
         self.fresh(old)
         outcome, report = self.with_fault(0, "none", line)
         self.assertEqual(outcome.code, 0, outcome)
@@ -101,13 +97,13 @@ class WriteFaults(ProgramTest):
         self.assertIn(code, (0, 1), where)
         if code == 1:
             self.assertEqual(text.count("montelux: error: "), 1, where)
-            if kind == "ENOSPC":  # the first failure is named, even where a library swallows it
+            if kind == "ENOSPC":  # the first failure is reported, even where a library ignores it
                 self.assertIn("No space left on device", text, where)
         if kind in ("ENOSPC", "EIO", "EDQUOT", "full-disk") and code == 0 and "montelux: warning: " not in text:
-            # Probes and files that are only read may fail to open or close; nothing else goes unnoticed.
+            # Probes and files that are only read may fail to open or close; every other fault must be reported.
             self.assertRegex(report.splitlines()[0], "fault (open|close)", f"it went unnoticed: {where}")
         if kind in ("short", "EINTR") and code != 0:
-            # Half a write is no fault, and interrupted calls can be made again, but for renaming.
+            # Short writes are no faults, and interrupted calls are repeated, except renames.
             self.assertRegex(report, "fault (rename|link)", where)
 
     def test_pictures(self):
@@ -130,7 +126,7 @@ class WriteFaults(ProgramTest):
         self.faults(["points.csv"], "sample --set sobol --n 2000 --dim 3 -o points.csv", {"points.csv": b"old"})
 
     def saved(self, *lines):
-        """Files that commands leave, run one after the other in a folder of their own."""
+        """The files that consecutive commands leave in a folder of their own."""
         shutil.rmtree("saved", ignore_errors=True)
         os.mkdir("saved")
         for line in lines:
@@ -144,11 +140,11 @@ class WriteFaults(ProgramTest):
         return outcome.text
 
     def test_checkpoint_of_an_integral(self):
-        """Checkpoints contain elapsed times, so resumed results are compared instead of their bytes."""
+        """Checkpoints contain elapsed times, so the results of resumed runs are compared."""
         integral = "integrate x*y --over x,y=0:1 --method basic --quiet --json"
         checkpoints = f"{integral} --checkpoint state --checkpoint-every 0"
         longer = f"{checkpoints} --evaluations 50000 --resume"
-        old = self.saved(f"{checkpoints} --evaluations 16384")  # a step ends there in the longer run, too
+        old = self.saved(f"{checkpoints} --evaluations 16384")  # a step of the longer run ends there, too
         wanted = without_seconds(self.output(f"{integral} --evaluations 50000"))
 
         def check(where):

@@ -1,5 +1,5 @@
-// The split sum's report: where both sides are known, and what its picture holds. Comparisons at five standard errors:
-// a false alarm in 1.7 million each, 3e-5 for the file.
+// The split sum's report: where both sides are known, and what its picture holds. False alarms: 1e-5 for the 18 values
+// at five standard errors, 2e-6 for the 18 biases at six errors that are estimated from 64 orientations (Student's t).
 #include "test/bake/bake_testing.h"
 #include <array>
 #include <cmath>
@@ -32,7 +32,7 @@ TEST(SplitSumReport, IsExactUnderConstantLight) {
     SplitSumSettings settings;
     settings.roughness = {0.325, 0.625, 0.975};
     settings.n_dot_v = {0.125, 0.525, 0.975};
-    settings.orientations = 32;
+    settings.orientations = 64;
     settings.sphere_size = 0;
     const SplitSumReport report = split_sum_report(map, settings);
     ASSERT_EQ(report.rows.size(), 18u);
@@ -44,7 +44,7 @@ TEST(SplitSumReport, IsExactUnderConstantLight) {
         // Each orientation has an error of at most a percent, relative to the radiance of the map if that is larger.
         const double error = settings.target_error * std::max(truth, 3.0) / std::sqrt(settings.orientations);
         EXPECT_NEAR(row.full, truth, 5 * error) << where;
-        EXPECT_NEAR(row.bias, 0, 5 * row.bias_error + 1e-3) << where;
+        EXPECT_NEAR(row.bias, 0, 6 * row.bias_error + 1e-3) << where;
     }
 }
 
