@@ -31,6 +31,11 @@ class PlayedRank {
         out.put(std::int32_t{1});
         mailbox_.send(leading_rank, protocol::hello, out.take());
     }
+    void say_counts(std::uint64_t bad, std::uint64_t overflows) {
+        ByteWriter out;
+        out.put(protocol::SplatCounts{bad, overflows});
+        mailbox_.send(leading_rank, protocol::splat_counts, out.take());
+    }
     void say_done(std::uint32_t tile, std::uint64_t remaining) {
         ByteWriter out;
         out.put(protocol::TaskReport{.tile = tile, .remaining = remaining});
@@ -136,6 +141,28 @@ TEST_F(CoordinatorTest, TilesInTransitAtTheEndOfARoundAreNotForgotten) {
     ASSERT_EQ(heard.size(), 1u);
     EXPECT_EQ(heard.front().tile, *moved);
     EXPECT_NE(heard.front().pixels, Assignment::Pixels::known);
+}
+
+TEST_F(CoordinatorTest, CountsOfSplatsAreThoseOfAllRanksAndRounds) {
+    LocalJob job(3);
+    PlayedRank first(job.mailbox(1)), second(job.mailbox(2));
+    Coordinator coordinator(job.mailbox(0), crop(), settings());
+    state_.splats.emplace(crop());
+    first.say_hello();
+    second.say_hello();
+    for (int round = 0; round < 2; ++round) {
+        state_.target_samples.assign(state_.film.pixels().size(), 8);
+        run(coordinator, [&] {
+            if (first.hear_assignments().empty()) return false;
+            first.say_counts(1, 2);
+            second.say_counts(30, 40);
+            first.say(protocol::gathered);
+            second.say(protocol::gathered);
+            return true;
+        });
+    }
+    EXPECT_EQ(state_.splats->bad(), 62u);
+    EXPECT_EQ(state_.splats->overflows(), 84u);
 }
 
 // Rounds, and what the leader does between them, are shorter and longer than its patience.

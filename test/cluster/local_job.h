@@ -47,4 +47,25 @@ class LocalJob {
     std::vector<std::unique_ptr<Rank>> ranks_;
 };
 
+// A mailbox whose rank falls silent: after its n-th message of a kind, or of any, all that it sends is lost.
+class FailingMailbox final : public Mailbox {
+  public:
+    FailingMailbox(Mailbox& mailbox, std::optional<int> last, int n)
+        : mailbox_(mailbox), last_(last), left_(n) {}
+    int rank() const override { return mailbox_.rank(); }
+    int size() const override { return mailbox_.size(); }
+    void send(int to, int tag, std::vector<std::uint8_t> bytes) override {
+        if (left_ <= 0) return;
+        mailbox_.send(to, tag, std::move(bytes));
+        left_ -= tag == last_.value_or(tag);
+    }
+    std::optional<Message> receive() override { return mailbox_.receive(); }
+    bool failed() const { return left_ <= 0; }
+
+  private:
+    Mailbox& mailbox_;
+    std::optional<int> last_;
+    int left_;
+};
+
 } // namespace montelux::testing

@@ -84,5 +84,20 @@ TEST(SharedIntegrand, SilentRanksAreGivenUp) {
     EXPECT_THROW(SharedIntegrand(job.mailbox(0), wavy, 2, 1, 0.1), Error);
 }
 
+// A rank falls silent after its hello: the caller that waits for its batch must not take values that nobody computed.
+TEST(SharedIntegrand, OpenBatchesOfSilentRanksFail) {
+    LocalJob job(2);
+    FailingMailbox failing(job.mailbox(1), std::nullopt, 1);
+    std::thread helper([&] { serve_integrand(failing, wavy, 2, 1, nullptr, 60); });
+    const PointBuffer x(8, 2);
+    ValueBuffer y(8, 2);
+    {
+        SharedIntegrand shared(job.mailbox(0), wavy, 2, 0, 0.3);
+        EXPECT_THROW(shared.lead([&] { shared(x, y); }), Error);
+        EXPECT_TRUE(shared.failed());
+    }
+    helper.join();
+}
+
 } // namespace
 } // namespace montelux::testing

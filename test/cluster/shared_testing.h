@@ -55,26 +55,6 @@ inline std::uint64_t render_on(int ranks, const SceneDescription& description, c
     return coordinator.moved_tiles();
 }
 
-// A mailbox whose rank falls silent: after its n-th message of a kind, all that it sends is lost.
-class FailingMailbox final : public Mailbox {
-  public:
-    FailingMailbox(Mailbox& mailbox, protocol::Tag last, int n) : mailbox_(mailbox), last_(last), left_(n) {}
-    int rank() const override { return mailbox_.rank(); }
-    int size() const override { return mailbox_.size(); }
-    void send(int to, int tag, std::vector<std::uint8_t> bytes) override {
-        if (left_ <= 0) return;
-        mailbox_.send(to, tag, std::move(bytes));
-        left_ -= tag == last_;
-    }
-    std::optional<Message> receive() override { return mailbox_.receive(); }
-    bool failed() const { return left_ <= 0; }
-
-  private:
-    Mailbox& mailbox_;
-    protocol::Tag last_;
-    int left_;
-};
-
 // A render led by one rank and taken by another, which falls silent: the state that was saved of it.
 inline RenderState render_until_lost(const SceneDescription& description, protocol::Tag last, int n) {
     LocalJob job(2);
