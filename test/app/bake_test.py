@@ -101,6 +101,13 @@ class Bake(ProgramTest):
         self.expect(0, "32 x 32 pixels", "info table.png")
         self.expect(0, "16 x 24 pixels", "info r.exr")
 
+    def test_error_bounds_include_the_rounding_of_texels(self):
+        def bound(texels):
+            return self.json(f"bake brdf --size 8 -o b.ktx2 --format {texels}")["files"][0]["largest_error_bound"]
+
+        for half, single in ("rg16f", "rg32f"), ("rgba16f", "rgba32f"):
+            self.assert_near(bound(half) - bound(single), 2**-12 - 2**-25, 1e-9, half)
+
     def test_sky(self):
         line = "bake sky --elevation 20 --turbidity 3 --size 64"
         self.expect(0, "level ground gets", f"{line} -o clear.exr -o clear.hdr -o clear.pfm")

@@ -80,17 +80,15 @@ class FinishedFrames(FramesTest):
         self.assertEqual(sum("pixels" in row for row in text.splitlines()), 2, text)
         self.expect(0, "out.0001.png, out.0001.pfm: 32 x 24 pixels, 3 samples", f"{line} --spp 3 --frames 1")
 
-    test_other_settings_are_rendered_anew = steps(f"""
-        0 a.0002.png: 32 x 24 $ {LINE} -o a.png
-        0 a.0002.png: 32 x 24 $ {LINE} -o a.png --seed 7
-        0 a.0002.png: 32 x 24 $ {LINE} -o a.png --tone aces
-        0 a.0002.png: 32 x 24 $ {LINE} -o a.png --exposure 1
-        0 a.0002.png: 32 x 24 $ {LINE} -o a.png --layers default,uv
-        0 a.0002.png: 32 x 24 $ {LINE} -o a.png --frame-rate 3 --time 60
-        0 a.0002.png: 32 x 24 $ {LINE} -o a.png --background white
-        0 a.0002.png: 32 x 24 $ {LINE} -o a.png
-        0 skipped: frames 2 $ {LINE} -o a.png
-    """)
+    def test_other_settings_are_rendered_anew(self):
+        line = f"{self.LINE} -o a.png -o a.jpg"
+        self.expect(0, "a.0002.jpg: 32 x 24", line)
+        for option in ("--seed 7", "--tone aces", "--exposure 1", "--bits 16", "--quality 50", "--layers default,uv",
+                       "--frame-rate 3", "--time 60", "--background white"):  # fmt: skip
+            with self.subTest(option):
+                self.expect(0, "a.0002.jpg: 32 x 24", f"{line} {option}")
+                self.expect(0, "a.0002.jpg: 32 x 24", line)
+        self.expect(0, "skipped: frames 2", line)
 
     def test_changed_scene_is_rendered_anew(self):
         line = f"render changed.gltf {SMALL} --frames 2 -o c.png"

@@ -154,6 +154,7 @@ MISTAKES = [
     (1, "/no/such/folder/p.csv", "x --over x=0:1 --points /no/such/folder/p.csv"),
     (1, "/no/such/folder/state", "x --over x=0:1 --checkpoint /no/such/folder/state"),
     (1, "is zero where '1' is not", "1 --over x=0:1 --density 'x<0.5 ? 1 : 0'"),
+    (1, "is zero where '-1-x' is not", "--over x=0:1 --density 'x<0.5 ? 1 : 0' -- -1-x"),
     (1, "--density 'x - 0.5'", "1 --over x=0:1 --density 'x - 0.5'"),
     (1, "--density '1/x'", "1 --over x=0:1 --density 1/x"),
     (1, "--density '0*x'", "1 --over x=0:1 --density 0*x"),
@@ -244,6 +245,10 @@ class Results(ProgramTest):
         formulas = [f"1.5*x+{k}.5" for k in range(1, 201)]
         for _ in range(20):
             self.expect(0, "", "integrate --over x=0:1 --method quasi --evaluations 1024 --threads 16", *formulas)
+
+    def test_threads_share_the_parsers_of_a_density(self):
+        line = "integrate exp(-x) --over x=0:1 --density x=1+x --method basic --evaluations 3e4 --quiet"
+        self.assertEqual(self.output(f"{line} --threads 8"), self.output(f"{line} --threads 1"))
 
     def test_warning_for_values_that_are_left_out(self):
         text = self.expect(0, "were not finite and were left out",

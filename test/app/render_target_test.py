@@ -1,6 +1,8 @@
 """Renders with a target error, a time limit and checkpoints: exit codes, messages, wrong usage."""
 
-from program import SKY, ProgramTest, read, scene, write
+import re
+
+from program import SKY, ProgramTest, read, read_pfm, scene, write
 
 REACHED = """
     0 target reached $ --target-error 2%
@@ -40,6 +42,16 @@ class TargetTest(ProgramTest):
 class Targets(TargetTest):
     def test_reports(self):
         self.expect_each(REACHED, "render ball.pbrt -o x.exr ")
+
+    def test_share_of_light_that_clamping_removes(self):
+        def luminance(option):
+            text = self.expect(0, "", f"render ball.pbrt --spp 4 --sampler independent -o light.pfm {option}")
+            red, green, blue = (sum(read_pfm("light.pfm")[2][c::3]) for c in range(3))
+            return text, 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+        text, left = luminance("--clamp 0.25")
+        share = float(re.search(r"clamped, which removed ([0-9.]+) % of the light", text)[1])
+        self.assert_near(share, 100 * (1 - left / luminance("")[1]), 0.1)
 
     def test_file_records_the_reason_of_the_end(self):
         self.expect(0, "target reached", "render ball.pbrt --target-error 2% -o ended.exr")

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <thread>
 #include <vector>
 
 #include "montelux/film/film.h"
@@ -69,6 +70,19 @@ TEST(SplatFilm, AnyOrderAndAnyThreadsGiveTheSameBits) {
     EXPECT_EQ(copy_of(forwards), copy_of(threads));
     EXPECT_EQ(copy_of(forwards), copy_of(halves));
     EXPECT_NE(copy_of(forwards), copy_of(other));
+}
+
+TEST(SplatFilm, ThreadsThatMeetAtOnePixelLoseNothing) {
+    SplatFilm film(bounds);
+    constexpr int each = 200000, count = 4;
+    {
+        std::vector<std::jthread> threads;
+        for (int t = 0; t < count; ++t)
+            threads.emplace_back([&film] {
+                for (int i = 0; i < each; ++i) film.add(3, 2, {1, 2, 3});
+            });
+    }
+    for (int c = 0; c < 3; ++c) EXPECT_EQ(film.sum(3, 2)[c], (c + 1.0) * each * count);
 }
 
 TEST(SplatFilm, PixelsOutsideAreIgnored) {
