@@ -202,6 +202,9 @@ def test_maps_of_your_own():
     assert float(r) == pytest.approx(math.pi / 4, abs=6 * r.standard_error)
     with pytest.raises(montelux.Error, match="expected two arrays"):
         montelux.integrate(lambda x: x, montelux.Domain.mapped(1, 1, lambda u: u))
+    both = montelux.Domain.product(disk, montelux.Domain.mapped(1, 1, lambda u: (u**2, 2 * u), "square"))
+    r = montelux.integrate(lambda x: x[:, 2], both, "quasi", evaluations=20_000)
+    assert float(r) == pytest.approx(math.pi / 2, abs=6 * r.standard_error)
 
 
 # Densities and controls.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 import subprocess
 import sys
 import threading
@@ -214,6 +215,16 @@ def test_snapshots_write_no_checkpoint(scene, tmp_path):
     render = scene.render(time=60, checkpoint=often, checkpoint_every=0.1, every=0.02)
     assert any(often.exists() for _ in render) and not render.finished
     render.stop()
+
+
+def test_checkpoint_that_cannot_be_written_is_a_warning(scene, tmp_path):
+    folder = tmp_path / "folder"
+    folder.mkdir()
+    render = scene.render(time=60, checkpoint=folder / "render.state", checkpoint_every=1000, every=0.02)
+    next(iter(render))
+    shutil.rmtree(folder)
+    with pytest.warns(RuntimeWarning, match="render.state"):
+        render.stop()
 
 
 # Pictures.

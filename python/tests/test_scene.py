@@ -25,6 +25,13 @@ def test_attributes_change_the_picture(scene):
     assert scene.render().mean.shape == (4, 4, 3)
 
 
+def test_crop_keeps_its_place_on_films_of_any_resolution(scene):
+    scene.film.resolution = 50_000, 10
+    scene.film.crop = (40_000, 0, 50_000, 10)
+    scene.film.resolution = 60_000, 10
+    assert scene.film.crop == (48_000, 0, 60_000, 10)
+
+
 def test_attributes_read_what_was_set(scene):
     camera, film = scene.camera, scene.film
     camera.fov, camera.lens_radius = 33, 0.5

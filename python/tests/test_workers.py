@@ -54,6 +54,11 @@ def assert_equal_bits(runs):
         assert r.evaluations == runs[0].evaluations
 
 
+def test_as_many_workers_as_processors_of_this_process(monkeypatch):
+    monkeypatch.setattr(os, "sched_getaffinity", lambda pid: {3, 5, 9})
+    assert montelux._workers.worker_count(0) == 3
+
+
 @pytest.mark.parametrize("method", ["basic", "vegas", "quasi", "adaptive", "cubature"])
 def test_the_bits_do_not_depend_on_the_workers(method):
     assert_equal_bits(in_processes(bump, BOX, method, evaluations=6000, seed=3))

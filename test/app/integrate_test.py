@@ -247,7 +247,7 @@ class Results(ProgramTest):
             self.expect(0, "", "integrate --over x=0:1 --method quasi --evaluations 1024 --threads 16", *formulas)
 
     def test_threads_share_the_parsers_of_a_density(self):
-        line = "integrate exp(-x) --over x=0:1 --density x=1+x --method basic --evaluations 3e4 --quiet"
+        line = "integrate exp(-x) --over x=0:1 --density x=1+x --method basic --evaluations 1e5 --quiet"
         self.assertEqual(self.output(f"{line} --threads 8"), self.output(f"{line} --threads 1"))
 
     def test_warning_for_values_that_are_left_out(self):
