@@ -9,7 +9,7 @@
 namespace montelux::testing {
 namespace {
 
-// Quadrics, meshes and instances; the first of both kinds have random holes.
+// Quadrics, meshes and instances that move; the first of both other kinds have random holes.
 Scene scene_of_all_geometry() {
     Scene scene;
     Draws draws(7);
@@ -31,8 +31,11 @@ Scene scene_of_all_geometry() {
         scene, Quadric(Sphere{.radius = 0.3f, .z_min = -0.3f, .z_max = 0.3f, .world_from_object = {}}),
         false);
     scene.objects.push_back({.shapes = {mesh, sphere}});
-    for (int i = 0; i < 3; ++i)
-        scene.instances.push_back({.object = 0, .world_from_object = draws.transform(1, false)});
+    for (Index i = 0; i < 3; ++i) {
+        const Transform start = draws.transform(1, false), end = draws.transform(1, false);
+        scene.motions.emplace_back(start, end);
+        scene.instances.push_back({.object = 0, .world_from_object = start, .motion = i});
+    }
     return scene;
 }
 
@@ -65,7 +68,9 @@ void expect_same_hits() {
     std::vector<Ray> rays;
     for (int i = 0; i < 20003; ++i) {
         const Vec3f o = draws.in_cube(2);
-        rays.push_back({o, draws.direction(), draws.uniform() < 0.5f ? 1.5f : 10.0f});
+        const Vec3f d = draws.direction();
+        const float t_max = draws.uniform() < 0.5f ? 1.5f : 10.0f;
+        rays.push_back({o, d, t_max, draws.uniform()}); // each ray of a packet at a time of its own
     }
     for (const bool closest : {true, false}) {
         const std::vector<BareHit> alone = traced<1>(scene, closest, rays),

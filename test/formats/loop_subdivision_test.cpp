@@ -1,3 +1,5 @@
+#include <array>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <set>
 #include <utility>
@@ -87,6 +89,45 @@ TEST(LoopSubdivision, APlaneStaysInItsPlane) {
     // Inner vertices of a regular grid are where they were, and so are edges away from corners.
     EXPECT_LT(length(m.positions[2 * 5 + 2] - Vec3f(2, 2, 0)), 1e-6f);
     EXPECT_LT(length(m.positions[2] - Vec3f(2, 0, 0)), 1e-6f);
+}
+
+// A boundary vertex at `at` with `neighbours` around it, which are not in a plane; triangles anticlockwise from +z.
+Coarse boundary_fan(Index neighbours, Vec3f at) {
+    constexpr std::array<Vec3f, 7> around = {Vec3f(4, 0, 1), {3, 2, 0},  {1, 4, -1}, {-1, 4, 2},
+                                             {-3, 2, 0},     {-4, 0, 1}, {-3, -2, 3}};
+    Coarse c;
+    c.positions.push_back(at);
+    for (Index k = 0; k < neighbours; ++k) c.positions.push_back(at + around.at(k));
+    for (Index k = 1; k < neighbours; ++k) c.indices.insert(c.indices.end(), {0, k, k + 1});
+    return c;
+}
+
+// Weights of a tangent's mask have the sum 0.
+TEST(LoopSubdivision, NormalsOnABoundaryDoNotDependOnThePlace) {
+    for (Index neighbours = 2; neighbours <= 7; ++neighbours) {
+        const Coarse here = boundary_fan(neighbours, {0, 0, 0}),
+                     there = boundary_fan(neighbours, {16, -32, 8});
+        for (int levels = 0; levels <= 2; ++levels) {
+            const SubdividedMesh a = subdivide_loop(here.positions, here.indices, levels);
+            const SubdividedMesh b = subdivide_loop(there.positions, there.indices, levels);
+            ASSERT_EQ(a.normals.size(), b.normals.size());
+            for (std::size_t v = 0; v < a.normals.size(); ++v)
+                EXPECT_LT(length(a.normals[v] - b.normals[v]), 1e-5f * length(a.normals[v]))
+                    << "vertex " << v << " of " << neighbours << " neighbours, level " << levels;
+        }
+    }
+}
+
+// Four triangles are steps of 45 degrees: inner neighbours weigh (2 - 2 cos 45) sin(k 45), the two on the boundary
+// -sin 45.
+TEST(LoopSubdivision, NormalOfABoundaryVertexOfFourTriangles) {
+    const Coarse c = boundary_fan(5, {0, 0, 0});
+    const SubdividedMesh m = subdivide_loop(c.positions, c.indices, 0);
+    const std::vector<Vec3f>& p = m.positions;
+    const float sqrt_2 = std::sqrt(2.f);
+    const Vec3f across = (sqrt_2 - 1) * (p[2] + p[4]) + (2 - sqrt_2) * p[3] - sqrt_2 / 2 * (p[1] + p[5]);
+    const Vec3f expected = cross(p[5] - p[1], across);
+    EXPECT_LT(length(m.normals[0] - expected), 1e-5f * length(expected));
 }
 
 TEST(LoopSubdivision, UnusedVerticesAndSingleTriangles) {

@@ -1,7 +1,9 @@
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <limits>
 #include <random>
 #include <string>
 
@@ -199,11 +201,29 @@ TEST(Ply, TriangleStrips) {
 }
 
 TEST(Ply, NotFiniteInBinary) {
-    std::string s =
-        "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty float x\nproperty float y\n"
-        "property float z\nelement face 0\nproperty list uchar int vertex_indices\nend_header\n";
-    for (float v : {0.0f, std::numeric_limits<float>::quiet_NaN(), 0.0f}) put(s, v, false);
-    EXPECT_NE(ply_error(s).find("vertex 0 has a value that is not finite"), std::string::npos);
+    constexpr std::array names = {"x", "y",  "z",  "nx",  "ny",    "nz",   "u",
+                                  "v", "u2", "v2", "red", "green", "blue", "alpha"};
+    const auto read = [&](std::size_t changed, float value) {
+        std::string s = "ply\nformat binary_little_endian 1.0\nelement vertex 1\n";
+        for (const char* name : names) s += std::string("property float ") + name + "\n";
+        s += "element face 0\nproperty list uchar int vertex_indices\nend_header\n";
+        for (std::size_t i = 0; i < names.size(); ++i) put(s, i == changed ? value : 0.5f, false);
+        return parse_ply({reinterpret_cast<const std::uint8_t*>(s.data()), s.size()}, "mesh.ply", true);
+    };
+    using Limits = std::numeric_limits<float>;
+    for (std::size_t changed = 0; changed < names.size(); ++changed) {
+        EXPECT_EQ(read(changed, 0.25f).mesh.positions.size(), 1u);
+        for (const float value : {Limits::quiet_NaN(), Limits::infinity(), -Limits::infinity()}) {
+            std::string message;
+            try {
+                read(changed, value);
+            } catch (const Error& e) {
+                message = e.what();
+            }
+            EXPECT_NE(message.find("vertex 0 has a value that is not finite"), std::string::npos)
+                << names.at(changed) << " is " << value << ": " << message;
+        }
+    }
 }
 
 TEST(Ply, DamagedFiles) {

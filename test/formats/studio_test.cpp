@@ -266,6 +266,23 @@ TEST_F(Studio, EnvironmentsReplaceInfiniteLights) {
     EXPECT_EQ(d.scene.shapes.size(), 2u);
 }
 
+// An orbit says where the camera stands and where it looks.
+TEST_F(Studio, OrbitsKeepTheMediumAndTheShutterOfTheCamera) {
+    SceneDescription d = parse_pbrt(R"(MakeNamedMedium "smoke" "string type" "homogeneous"
+MakeNamedMedium "fog" "string type" "homogeneous" MediumInterface "" "fog"
+Camera "perspective" "float shutteropen" 0.25 "float shutterclose" 0.75
+WorldBegin MediumInterface "smoke" "fog" Shape "sphere")",
+                                    "a.pbrt", ".", warnings_);
+    const CameraSettings before = d.scene.camera;
+    ASSERT_NE(before.medium, no_index);
+    add(d, {.orbit = Orbit{30, 10}});
+    EXPECT_GT(
+        length(d.scene.camera.world_from_camera.point(Vec3d{}) - before.world_from_camera.point(Vec3d{})), 1);
+    EXPECT_EQ(d.scene.camera.medium, before.medium);
+    EXPECT_EQ(d.scene.camera.shutter_open, 0.25f);
+    EXPECT_EQ(d.scene.camera.shutter_close, 0.75f);
+}
+
 // The middle of a map is what a camera in front of the model sees behind it, and its left part is on the left.
 TEST_F(Studio, EnvironmentsStandUpright) {
     Image map(64, 32, {"R", "G", "B"});

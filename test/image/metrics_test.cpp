@@ -1,5 +1,7 @@
 #include "test/image/image_testing.h"
+#include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "montelux/image/difference_picture.h"
 #include "montelux/image/metrics.h"
@@ -105,6 +107,31 @@ TEST(Metrics, ScoresOfHonestErrorsAreStandardNormal) {
     EXPECT_NEAR(half.z.standard_deviation, 2, 10 * 0.0029);
 }
 
+TEST(Metrics, SkewnessOfADifferenceIsThatOfBothPictures) {
+    const std::vector<std::string> names{"Y", "stderr.Y", "skewness.Y"};
+    Image a(1, 1, names), b(1, 1, names);
+    const auto fill = [](Image& image, std::vector<float> values) {
+        std::copy(values.begin(), values.end(), image.f32().begin());
+    };
+    const auto scores = [&] { return compare_pictures(measured_picture("a", a), measured_picture("b", b)); };
+    // Third cumulants 0.5 * 3^3 and 1 * 4^3, a variance of 3^2 + 4^2, a difference of one standard deviation:
+    // by the formula of skew_corrected_z, 1 + g / 6 + g / 3 for the skewness g = (13.5 - 64) / 125.
+    fill(a, {7, 3, 0.5f});
+    fill(b, {2, 4, 1});
+    EXPECT_DOUBLE_EQ(scores().z.mean, 1);
+    EXPECT_DOUBLE_EQ(scores().skew_corrected.mean, 1 + (13.5 - 64) / 125 / 2);
+    // In turns, the difference and its skewness change their signs.
+    std::swap(a, b);
+    EXPECT_DOUBLE_EQ(scores().skew_corrected.mean, -1 - (13.5 - 64) / 125 / 2);
+    // What is equally skewed in both cancels.
+    fill(a, {7, 3, 2});
+    fill(b, {4, 3, 2});
+    EXPECT_DOUBLE_EQ(scores().skew_corrected.mean, scores().z.mean);
+    // The skewness of one alone.
+    b = grey({4});
+    EXPECT_DOUBLE_EQ(scores().skew_corrected.mean, 1 + 2 / 2.0);
+}
+
 TEST(Metrics, SetsTheNoisiestReferencePixelsAside) {
     std::vector<float> va(100, 1), vb(100, 1), error(100, 0.01f);
     vb[17] = 50; // bright and noisy, but less so beside its light than the next
@@ -191,6 +218,19 @@ TEST(DifferencePicture, IsSignedAndScaled) {
                                DifferenceMeasure::z_score);
         },
         {"standard errors"});
+}
+
+TEST(DifferencePicture, PixelsThatAreNotFiniteChangeNoOthers) {
+    const Image a = grey({1, 2, 0.5f, 3}), b = grey({1, 1, 1, 4});
+    const auto alone = difference_picture(measured_picture("a", a), measured_picture("b", b));
+    for (const float bad : {nan_f, std::numeric_limits<float>::infinity()}) {
+        const Image more_a = grey({1, 2, 0.5f, 3, 1}), more_b = grey({1, 1, 1, 4, bad});
+        const auto both = difference_picture(measured_picture("a", more_a), measured_picture("b", more_b));
+        EXPECT_EQ(both.full_scale, alone.full_scale) << bad;
+        const auto codes = both.picture.u8();
+        EXPECT_TRUE(std::equal(codes.begin(), codes.begin() + 12, alone.picture.u8().begin())) << bad;
+        EXPECT_EQ(std::vector<int>(codes.begin() + 12, codes.end()), (std::vector<int>{255, 0, 255})) << bad;
+    }
 }
 
 } // namespace

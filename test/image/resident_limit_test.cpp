@@ -12,11 +12,36 @@
 #include <memory>
 #include <string>
 #include <sys/mman.h>
+#include <sys/syscall.h>
 #include <thread>
 #include <unistd.h>
 #include <vector>
 
+#include "montelux/image/resident_limit.h"
 #include "montelux/image/texel_file.h"
+
+namespace {
+
+// A mapping whose giving back takes long, so that a test can do something meanwhile.
+std::atomic<const void*> slow_mapping{nullptr};
+std::atomic<bool> is_giving_back{false}, is_removed{false}, was_removed_meanwhile{false};
+
+} // namespace
+
+// NOLINTBEGIN: this name and signature are those of the C library.
+#pragma GCC visibility push(default)
+extern "C" int madvise(void* begin, std::size_t size, int advice) noexcept {
+    if (begin != nullptr && begin == slow_mapping) {
+        is_giving_back = true;
+        for (int i = 0; i < 100 && !is_removed; ++i)
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        was_removed_meanwhile = is_removed.load();
+        slow_mapping = nullptr;
+    }
+    return static_cast<int>(::syscall(SYS_madvise, begin, size, advice));
+}
+#pragma GCC visibility pop
+// NOLINTEND
 
 namespace montelux {
 namespace {
@@ -125,6 +150,32 @@ TEST(ResidentLimit, TheLimitHoldsWhenOtherFilesGo) {
     read_pages(block->bytes());
     std::this_thread::sleep_for(std::chrono::milliseconds(1500));
     EXPECT_LE(file->resident(), limit);
+}
+
+// A mapping may be unmapped once it is removed: nothing is done with it any more.
+TEST(ResidentLimit, RemovingWaitsForPagesThatAreGivenBack) {
+    const TemporaryFolder folder;
+    const std::string path = folder.write("map", std::string(mib, 'x'));
+    const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+    void* const map = ::mmap(nullptr, mib, PROT_READ, MAP_SHARED | MAP_POPULATE, descriptor, 0);
+    ::close(descriptor);
+    ASSERT_NE(map, MAP_FAILED);
+    const std::span<const std::byte> mapping(static_cast<const std::byte*>(map), mib);
+    is_giving_back = is_removed = was_removed_meanwhile = false;
+    slow_mapping = map;
+    {
+        ResidentLimit limit(mib / 16);
+        limit.add(mapping);
+        while (!is_giving_back) {
+            read_pages(mapping);
+            std::this_thread::sleep_for(std::chrono::milliseconds(1));
+        }
+        limit.remove(mapping);
+        is_removed = true;
+        EXPECT_EQ(limit.resident(), 0u);
+    }
+    EXPECT_FALSE(was_removed_meanwhile);
+    ::munmap(map, mib);
 }
 
 } // namespace

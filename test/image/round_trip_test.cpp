@@ -105,6 +105,24 @@ TEST(ExrFile, KeepsAttributes) {
     EXPECT_TRUE(same_bits(back.f32(), image.f32()));
 }
 
+// A flag of the file says that names may have 255 characters, not only 31. It says nothing about tiles.
+TEST(ExrFile, NamesAreAsLongAsTheFileSaysTheyMayBe) {
+    TemporaryFolder folder;
+    const std::string name(255, 'x');
+    const Image image = make_picture(5, 3, {"R", "G", "B", name});
+    write_image(folder / "a.exr", image);
+    const Image back = read_image(folder / "a.exr").select(image.channel_names());
+    EXPECT_TRUE(same_bits(back.f32(), image.f32()));
+    // Bits 9 and 10 of the version are those of tiles and of long names.
+    std::string bytes = read_bytes(folder / "a.exr");
+    ASSERT_EQ(bytes[5], '\x04');
+    for (const char flags : {'\x00', '\x02'}) {
+        bytes[5] = flags;
+        write_bytes(folder / "b.exr", bytes);
+        expect_error([&] { read_image(folder / "b.exr"); }, {"a channel name is longer than 31"});
+    }
+}
+
 TEST(ExrFile, MatrixIsStoredForRowVectors) {
     TemporaryFolder folder;
     Image image = make_picture(1, 1, {"Y"});

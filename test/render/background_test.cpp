@@ -2,6 +2,8 @@
 #include "test/render/layer_testing.h"
 #include <gtest/gtest.h>
 
+#include "montelux/render/film_exposure.h"
+
 namespace montelux::testing {
 namespace {
 
@@ -70,6 +72,25 @@ TEST(Background, IsNotExposed) {
     const Film film = render(b.description);
     for (int c = 0; c < 3; ++c) EXPECT_EQ(channel_mean(film, 0, 0, c), double(blue[c]));
     EXPECT_LE(channel_mean(film, 8, 8, 1), 0.126);
+}
+
+// A sample whose weight is negative takes away from both, so that edges keep their brightness.
+TEST(Background, IsWeighedAsLightByFiltersWithNegativeLobes) {
+    SceneDescription d = square_below().description;
+    d.integrator.background = blue;
+    FilmContribution path;
+    path.transparency = 0.5f;
+    const auto background = [&](const PixelFilter& filter, float weight) {
+        d.film.filter = filter;
+        return FilmExposure(d)(path, 1, weight).rgb;
+    };
+    for (const PixelFilter& filter : {PixelFilter(MitchellFilter{}), PixelFilter(LanczosFilter{})})
+        for (const float weight : {1.25f, -1.25f})
+            for (int c = 0; c < 3; ++c) EXPECT_EQ(background(filter, weight)[c], 0.5f * weight * blue[c]);
+    // Other weights are 1 but for rounding, whose noise a constant need not get.
+    for (const PixelFilter& filter :
+         {PixelFilter(BoxFilter{}), PixelFilter(TriangleFilter{}), PixelFilter(GaussianFilter{})})
+        for (int c = 0; c < 3; ++c) EXPECT_EQ(background(filter, 1.0625f)[c], 0.5f * blue[c]);
 }
 
 } // namespace

@@ -83,7 +83,8 @@ TEST(BadSamples, TheFirstOffenderIsFoundAlone) {
 
 TEST(BadSamples, ReportsMergeInAnyOrder) {
     const BadSample late{BadSample::Kind::nan, 0, 0, 7}, low{BadSample::Kind::infinite, 9, 3, 2},
-        high{BadSample::Kind::negative, 1, 2, 2};
+        high{BadSample::Kind::negative, 1, 2, 2},
+        right{BadSample::Kind::nan, 5, 2, 2}; // in the row of `high`
     BadSampleReport a, b;
     a.add(late);
     a.add(low);
@@ -96,6 +97,13 @@ TEST(BadSamples, ReportsMergeInAnyOrder) {
     EXPECT_EQ(*ab.first, high);
     EXPECT_EQ(*ba.first, high);
     EXPECT_EQ(*with_none.first, low);
+    BadSampleReport left_last, right_last;
+    left_last.add(right);
+    left_last.add(high);
+    right_last.add(high);
+    right_last.add(right);
+    EXPECT_EQ(*left_last.first, high);
+    EXPECT_EQ(*right_last.first, high);
 }
 
 // Whenever it is stopped, every pixel holds whole samples, equal to those of a full run.

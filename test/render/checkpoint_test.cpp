@@ -125,6 +125,9 @@ TEST_F(Checkpoint, OtherRendersAreRefusedWithTheReason) {
     refused(changed([](SceneDescription& d) { std::get<PerspectiveCamera>(d.scene.camera.model).fov = 30; }),
             {}, "the scene's camera differs");
     refused(changed([](SceneDescription& d) { d.film.iso *= 2; }), {}, "film");
+    refused(changed([](SceneDescription& d) { d.film.exposure_time *= 2; }), {}, "film");
+    refused(changed([](SceneDescription& d) { d.film.white_balance = 5000; }), {}, "film");
+    refused(changed([](SceneDescription& d) { d.film.max_component_value = 10; }), {}, "film");
     refused(changed([](SceneDescription& d) {
                 d.film.filter = GaussianFilter{{1.5f, 1.5f}, 0.4f};
             }),

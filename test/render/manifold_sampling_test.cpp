@@ -14,6 +14,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/z_test.h"
+#include "montelux/render/render_warnings.h"
 
 namespace montelux::testing {
 namespace {
@@ -358,6 +359,23 @@ TEST(ManifoldSampling, ChangesNothingWithoutCasters) {
         for (std::size_t i = 0; i < plain.pixels().size(); ++i)
             ASSERT_TRUE(same_pixel(plain.pixels()[i], other.pixels()[i]));
     }
+}
+
+// Either may be missing of a pair: then a sentence says which.
+TEST(ManifoldSampling, WithoutEffectAWarningSaysWhy) {
+    SceneBuilder lamp = lit_corner();
+    add_box_lamp(lamp);
+    SceneBuilder sky = lit_corner();
+    sky.add_uniform_light(1);
+    add_ball(sky, perfect_mirror());
+    SceneBuilder both = lit_corner();
+    add_box_lamp(both);
+    add_ball(both, perfect_mirror());
+    const auto warning = [](const SceneDescription& d) { return manifold_warning(Renderer(d)); };
+    EXPECT_NE(warning(sampled(lamp)).find("no effect: no shape"), std::string::npos);
+    EXPECT_NE(warning(sampled(sky)).find("no effect: no light"), std::string::npos);
+    EXPECT_EQ(warning(sampled(both)), "");
+    EXPECT_EQ(warning(sky.description), "");
 }
 
 TEST(ManifoldSampling, RefusesWhatItCannotRender) {

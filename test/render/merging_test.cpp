@@ -16,6 +16,7 @@
 #include "montelux/render/merging_bias.h"
 #include "montelux/render/render_session.h"
 #include "montelux/render/render_warnings.h"
+#include "montelux/render/sample_context.h"
 #include "montelux/render/splat_pass.h"
 
 namespace montelux::testing {
@@ -233,6 +234,27 @@ TEST(MergingPictures, BiasFallsWithTheRadiusAndIsEstimated) {
     }
 }
 
+// Passes of known bias: their mean, its standard error, and the mean square over cells without that of the noise.
+TEST(MergingBias, IsTheMeanOfThePasses) {
+    constexpr double samples = 4, pixels = MergingBias::cell * MergingBias::cell;
+    for (const int passes : {2, 3}) {
+        // Two cells, of which the right one stays without bias.
+        MergingBias bias({8, 4, 8 + 2 * MergingBias::cell, 4 + MergingBias::cell});
+        for (int pass = 0; pass < passes; ++pass) {
+            // The left cell's bias is 2, 6, 10: twice what half the area loses.
+            const double loss = (1 + 2 * pass) * samples * pixels;
+            bias.add(8 + pass, 5, Vec3d{-loss, -loss, -loss});
+            bias.add(9, 6 + pass, Vec3d{0, 0, 0});
+            bias.close_pass(samples);
+        }
+        const double mean = passes == 2 ? 4 : 6, squared_error = passes == 2 ? 4 : 16.0 / 3;
+        const MergingBias::Estimate e = bias.estimate();
+        EXPECT_NEAR(e.mean, mean / 2, 1e-5);
+        EXPECT_NEAR(e.error, std::sqrt(squared_error) / 2, 1e-5);
+        EXPECT_NEAR(e.rms, std::sqrt((mean * mean - squared_error) / 2), 1e-5);
+    }
+}
+
 int differing(const Film& a, const Film& b) {
     int n = 0;
     for (std::size_t i = 0; i < a.pixels().size(); ++i) n += !same_pixel(a.pixels()[i], b.pixels()[i]);
@@ -294,6 +316,33 @@ TEST(MergingPictures, ResumedRendersHaveTheSameBits) {
         EXPECT_THROW(load_checkpoint(path, other, {}), Error);
         other.integrator.merging.reset();
         EXPECT_THROW(load_checkpoint(path, other, {}), Error);
+    }
+}
+
+// Light paths are as independent of those of other seeds as camera paths are.
+TEST(MergingPictures, SeedsAndPixelsHaveOtherLightPaths) {
+    SceneBuilder b = beam_in_mirrors(25);
+    b.description.integrator.method = IntegratorKind::bidirectional;
+    b.description.integrator.merging = MergingSettings{.radius = 0.1f};
+    const auto first_vertex = [&](std::uint64_t seed, const SampleContext::Key& key) {
+        b.description.sampler.seed = seed;
+        const Renderer renderer(b.description);
+        const SampleContext context(b.description, renderer.sampler(), renderer.scene(), renderer.camera());
+        RayTracer tracer(renderer.accelerator());
+        LightPaths paths;
+        context.trace_light(tracer, std::span(&key, 1), paths);
+        EXPECT_FALSE(paths.vertices.empty()); // the spot shines at a mirror
+        return paths.vertices.empty() ? Vec3f() : Vec3f(paths.vertices.front().p);
+    };
+    const auto same_place = [](Vec3f p, Vec3f q) { return length(p - q) == 0; };
+    for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
+        b.description.sampler.kind = kind;
+        const Vec3f place = first_vertex(1, {3, 5, 7});
+        EXPECT_TRUE(same_place(first_vertex(1, {3, 5, 7}), place));
+        EXPECT_FALSE(same_place(first_vertex(2, {3, 5, 7}), place));
+        EXPECT_FALSE(same_place(first_vertex(1, {4, 5, 7}), place));
+        EXPECT_FALSE(same_place(first_vertex(1, {3, 6, 7}), place));
+        EXPECT_FALSE(same_place(first_vertex(1, {3, 5, 8}), place));
     }
 }
 

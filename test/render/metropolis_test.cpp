@@ -176,6 +176,45 @@ TEST(MetropolisRender, FeaturesAreThoseOfPathTracing) {
     EXPECT_LT(depth, 0.02 * mean_depth);
 }
 
+// The share that the user gives is taken as it is, also beyond the limits of the automatic one.
+TEST(MetropolisRender, LargeStepsAreAsFrequentAsAskedFor) {
+    SceneDescription d = metropolis(mixed_scene(1, 8, 8).description, 64);
+    for (const float share : {0.02f, 0.8f}) {
+        d.integrator.large_step_probability = share;
+        const ChainStatistics chains = rendered(d).report.chains;
+        EXPECT_EQ(chains.large_step_probability, share);
+        const auto large = static_cast<double>(chains.large_steps);
+        const double steps = large + static_cast<double>(chains.small_steps);
+        // Binomial: six standard errors, 2e-9.
+        EXPECT_NEAR(large / steps, double(share), 6 * std::sqrt(double(share) * (1 - double(share)) / steps));
+    }
+    d.integrator.large_step_probability = 0;
+    const double automatic = double(rendered(d).report.chains.large_step_probability);
+    EXPECT_GT(automatic, 0.09);
+    EXPECT_LT(automatic, 0.51);
+}
+
+// Chains of few states, each of which counts: a furnace of known brightness. A limit that no sample reaches has chains
+// follow all light.
+TEST(MetropolisRender, ShortChainsLoseNoLight) {
+    SceneBuilder b;
+    b.description.film.width = b.description.film.height = 1;
+    b.description.film.crop = {0, 0, 1, 1};
+    b.description.film.max_component_value = 1e6f;
+    b.description.integrator.max_depth = 2;
+    b.add_quadric(Sphere{}, b.add(DiffuseMaterial{gray(0.5f)}), 1, true);
+    b.look({0.2, 0.1, -0.3}, {1, 0, 0}, 60);
+    SceneDescription d = metropolis(b.description, 2048);
+    d.sampler.replicate_points = 4;
+    const RenderState state = rendered(d);
+    EXPECT_EQ(state.report.chains.states, 3u);
+    EXPECT_EQ(state.report.chains.groups, 512u);
+    // Student's test of 512 groups at 7 standard errors: 1e-11.
+    const PictureMean mean = picture_mean(state.film);
+    EXPECT_LT(mean.standard_error, 0.05);
+    EXPECT_NEAR(mean.mean, 1.75, 7 * mean.standard_error);
+}
+
 // Cancelled at many moments and resumed from the file.
 TEST(MetropolisRender, InterruptedRendersEndWithTheSameBits) {
     TemporaryFolder folder;

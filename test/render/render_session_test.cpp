@@ -17,6 +17,7 @@
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/render/render_session.h"
 #include "montelux/render/render_warnings.h"
+#include "montelux/render/sample_context.h"
 #include "montelux/render/tile_renderer.h"
 
 namespace montelux::testing {
@@ -125,6 +126,38 @@ TEST(FinishedTiles, AreReportedAfterAResumeInTheMiddleOfARound) {
     ASSERT_GT(calls.size(), 1u);
     EXPECT_EQ(calls.begin()->first, 0u);
     for (const auto& [round, count] : calls) EXPECT_EQ(count, 6) << round;
+}
+
+// Samples that were not taken when a tile was stopped are taken with that tile alone.
+TEST(Tiles, StoppedOnesKeepNoSamplesForTheNext) {
+    const auto d = described(SamplerKind::independent, 4);
+    const Renderer renderer(*d);
+    const SampleContext context(*d, renderer.sampler(), renderer.scene(), renderer.camera());
+    const TileRenderer tiles(context, renderer.accelerator(), SampleOrder(renderer.sampler(), {}));
+    const std::vector<std::uint32_t> targets(16, 4);
+    struct Tile {
+        std::vector<Pixel> pixels = std::vector<Pixel>(16);
+        TileTally tally;
+    };
+    const auto take = [&](Tile& tile, int x0, int pixels_before_stop) {
+        const TileView view{.bounds = {x0, 4, x0 + 4, 8},
+                            .pixels = tile.pixels.data(),
+                            .stride = 4,
+                            .target_samples = targets.data(),
+                            .target_stride = 4};
+        tiles.render(
+            view, tile.tally, [&] { return pixels_before_stop-- == 0; }, [] { return false; });
+    };
+    Tile stopped, next, again;
+    take(stopped, 8, 5);
+    take(next, 12, -1);
+    EXPECT_EQ(stopped.tally.samples, 0u); // less than a batch
+    for (const Pixel& p : stopped.pixels) EXPECT_EQ(p.samples(), 0u);
+    EXPECT_EQ(next.tally.samples, 64u);
+    for (const Pixel& p : next.pixels) EXPECT_EQ(p.samples(), 4u);
+    take(stopped, 8, -1);
+    take(again, 8, -1);
+    for (std::size_t i = 0; i < 16; ++i) EXPECT_TRUE(same_pixel(stopped.pixels[i], again.pixels[i]));
 }
 
 TEST(Snapshots, ChangeNoBitAndAreBetweenSamples) {

@@ -1,10 +1,11 @@
-// Bilinear patches: rays, areas, and positions of a density. Draws are fixed; one chi-squared test at 1e-8.
+// Bilinear patches: rays, areas, tangents, and positions of a density. Draws are fixed; one chi-squared test at 1e-8.
 #include <cmath>
 #include <gtest/gtest.h>
 
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/scene/shape/bilinear_patch.h"
+#include "montelux/scene/shape/surface_point.h"
 
 namespace montelux {
 namespace {
@@ -29,6 +30,31 @@ TEST(BilinearPatch, DerivativesAndNormal) {
     const Vec3d between = bilinear(normal_of(twisted, 0, 0), normal_of(twisted, 1, 0),
                                    normal_of(twisted, 0, 1), normal_of(twisted, 1, 1), u, v);
     EXPECT_LT(length(between - cross(du, dv)), 1e-8);
+}
+
+// Along a line of constant u or v, positions and texture coordinates are linear: their differences are exact.
+TEST(BilinearPatch, TangentsFollowTheTextureCoordinates) {
+    Scene scene;
+    scene.bilinear_meshes.push_back(
+        {.positions = {Vec3f(twisted.p00), Vec3f(twisted.p10), Vec3f(twisted.p01), Vec3f(twisted.p11)},
+         .normals = {},
+         .uvs = {{0, 0.1f}, {1, 0}, {-0.2f, 0.8f}, {2, 1.5f}},
+         .indices = {0, 1, 2, 3}});
+    scene.shapes = {{.geometry = BilinearMeshIndex{0}}};
+    scene.world_shapes = {0};
+    const SceneView view(scene);
+    const auto at = [&](float u, float v) {
+        return surface_point(view, {}, {.b1 = u, .b2 = v, .shape = 0, .instance = no_index}, true);
+    };
+    for (const float u : {0.25f, 0.75f})
+        for (const float v : {0.25f, 0.5f}) {
+            const SurfacePoint s = at(u, v);
+            for (const Vec2f step : {Vec2f{0.25f, 0}, Vec2f{0, 0.25f}}) {
+                const SurfacePoint a = at(u - step.x, v - step.y), b = at(u + step.x, v + step.y);
+                const Vec2f d = b.uv - a.uv;
+                EXPECT_LT(length(d.x * s.dpdu + d.y * s.dpdv - (b.p - a.p)), 1e-5f) << u << ' ' << v;
+            }
+        }
 }
 
 TEST(BilinearPatch, Area) {

@@ -1,8 +1,10 @@
-// The closed form of a coated diffuse surface against the random walk through the same layers.
+// The closed form of a coated diffuse surface against the random walk through the same layers; the metal below a coat.
 #include "test/scene/bsdf_testing.h"
 #include <gtest/gtest.h>
 
 #include "montelux/mc/stats/moments.h"
+#include "montelux/scene/material/material_model.h"
+#include "montelux/scene/material/parameter_evaluator.h"
 
 namespace montelux::testing {
 namespace {
@@ -27,6 +29,19 @@ TEST_P(Coating, ClosedFormIsTheMeanOfTheWalk) {
                 EXPECT_NEAR(f, m.mean(), 5 * m.standard_error() + 5e-4 * f)
                     << "rho " << rho << " theta " << theta_o << " " << theta_i;
             }
+    }
+}
+
+// The first crossing enters, then every second one may lead back to the base.
+TEST(CoatingTable, DepthLimitsTheVisitsOfTheBase) {
+    const double rho = 0.8;
+    for (int max_depth = 1; max_depth <= 8; ++max_depth) {
+        const CoatingTable table(1.5f, 0, 0.01f, max_depth);
+        const double again = rho * double(table.internal_reflectance());
+        EXPECT_GT(again, 0.3);
+        double sum = 0, term = rho / (1.5 * 1.5);
+        for (int depth = 1; depth <= max_depth; depth += 2, term *= again) sum += term;
+        EXPECT_NEAR(table.base_albedo(SampledSpectrum(0.8f))[0], sum, 1e-6) << max_depth;
     }
 }
 
@@ -61,6 +76,28 @@ TEST(CoatingTable, WhiteFurnace) {
         }
         EXPECT_NEAR(m.mean(), 1, 5 * m.standard_error() + 1e-3);
     }
+}
+
+// Fresnel's formulae want the complex index of a metal relative to the coat that light comes from.
+TEST(CoatedConductor, IndexOfTheMetalIsRelativeToTheCoat) {
+    CoatedConductorMaterial material;
+    material.metal.eta = {0.75f};
+    material.metal.k = {4.5f};
+    material.coating.eta = 1.5f;
+    const Scene scene;
+    const SceneView view(scene);
+    const TextureContext context;
+    SampledWavelengths lambda = SampledWavelengths::sample_visible(0.4f);
+    const auto bsdf = material.bsdf(ParameterEvaluator(view, 0, context, lambda));
+    EXPECT_EQ(bsdf.coat.eta, 1.5f);
+    for (int i = 0; i < 4; ++i) {
+        EXPECT_FLOAT_EQ(bsdf.base.eta[i], 0.5f);
+        EXPECT_FLOAT_EQ(bsdf.base.k[i], 3);
+    }
+    // In air the index is that of the material.
+    const ConductorBsdf bare = ParameterEvaluator(view, 0, context, lambda).conductor(material.metal, {}, 1);
+    EXPECT_EQ(bare.eta[0], 0.75f);
+    EXPECT_EQ(bare.k[0], 4.5f);
 }
 
 } // namespace

@@ -7,6 +7,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/scene/shape/curve_segment.h"
+#include "montelux/scene/shape/curves.h"
 
 namespace montelux {
 namespace {
@@ -131,6 +132,24 @@ TEST(CurveSegments, BentCurvesAreHitWhereTheyAre) {
     }
     EXPECT_GT(hits, 300);
     EXPECT_GT(misses, 300);
+}
+
+// Uneven scales tilt normals against their surfaces' directions: the ribbon and its normals stay perpendicular.
+TEST(Strands, NormalsOfRibbonsStayPerpendicular) {
+    const Point3f points[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
+    const Normal3f normals[] = {{0, 1, 1}, {0, -0.5f, 2}};
+    const Transform t = Transform::rotate(50, {1, 2, 3}) * Transform::scale({2, 1, 3});
+    Curves curves;
+    curves.kind = Curves::Kind::ribbon;
+    append(curves, {.points = points, .normals = normals}, t);
+    ASSERT_EQ(curves.normals.size(), 1);
+    for (std::size_t k = 0; k < 2; ++k) {
+        const Vec3d along{1, 0, 0}, n(curves.normals[0][k]);
+        EXPECT_NEAR(length(n), 1, 1e-6);
+        EXPECT_NEAR(dot(n, normalize(t.vector(along))), 0, 1e-6);
+        EXPECT_NEAR(dot(n, normalize(t.vector(cross(along, Vec3d(normals[k]))))), 0, 1e-6);
+        EXPECT_GT(dot(n, t.vector(Vec3d(normals[k]))), 0);
+    }
 }
 
 } // namespace

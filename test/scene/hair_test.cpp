@@ -1,5 +1,6 @@
 // Hair: each factor of the model integrates to 1, the lobes share the light, nothing is lost without absorption.
 #include "test/scene/bsdf_testing.h"
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -115,6 +116,31 @@ TEST(Hair, ReflectsLikeACylinder) {
     for (double d : {-0.05, 0.05}) {
         EXPECT_GT(value(theta, phi), value(theta + d, phi));
         EXPECT_GT(value(theta, phi), value(theta, phi + d));
+    }
+}
+
+// Each lobe of a smooth clear hair is brightest where Snell's law turns it about the hair, and where the scales turn it
+// along the hair: by -2 tilts after the reflection, by 1 straight through, by 4 with one internal reflection.
+TEST(Hair, ScalesTiltEachLobe) {
+    const double h = 0.5, eta = 1.55, tilt = 3 * pi / 180, theta_o = 0.3;
+    const HairBsdf b = hair(static_cast<float>(h), SampledSpectrum(0), 0.05f, 0.05f, 3);
+    const Vec3f wo = {std::sin(0.3f), 0, std::cos(0.3f)}; // phi = 90 degrees
+    FixedStream stream({}, 0);
+    const auto value = [&](double theta, double phi) {
+        const Vec3d wi{std::sin(theta), std::cos(theta) * std::cos(phi), std::cos(theta) * std::sin(phi)};
+        return b.evaluate(wo, Vec3f(wi), TransportMode::radiance, stream).f[0];
+    };
+    const double sine = std::sin(theta_o), modified = std::sqrt(eta * eta - sine * sine) / std::cos(theta_o);
+    const double gamma_o = std::asin(h), gamma_t = std::asin(h / modified);
+    const std::array<double, 3> tilts{-2, 1, 4};
+    for (std::size_t p = 0; p < tilts.size(); ++p) {
+        const double k = static_cast<double>(p);
+        const double theta = -(theta_o + tilts[p] * tilt),
+                     phi = pi / 2 + 2 * k * gamma_t - 2 * gamma_o + k * pi;
+        for (double d : {-0.05, 0.05}) {
+            EXPECT_GT(value(theta, phi), value(theta + d, phi)) << p;
+            EXPECT_GT(value(theta, phi), value(theta, phi + d)) << p;
+        }
     }
 }
 

@@ -67,6 +67,24 @@ TEST(LensSystem, CamerasTurnThePictureUpright) {
     EXPECT_GT(above.d.z, 0.9f);
 }
 
+// Projection by the focal length inverts the rays through the middle of the pupil, but for the extension of the lens: a
+// fortieth of the distance from the middle of the film at a focus 40 focal lengths away.
+TEST(LensSystem, ProjectionLeadsBackToTheFilm) {
+    CameraSettings settings;
+    settings.model = singlet(0.003f, 2);
+    const Camera camera(settings, 60, 40);
+    for (const Point2f film :
+         {Point2f{50, 20}, Point2f{15, 20}, Point2f{30, 5}, Point2f{30, 30}, Point2f{45, 10}}) {
+        const CameraRay ray = camera.generate_ray(film, {0.5f, 0.5f});
+        ASSERT_GT(ray.weight, 0);
+        const auto back = camera.project(Vec3d(ray.o) + 100 * Vec3d(ray.d));
+        ASSERT_TRUE(back.has_value());
+        EXPECT_NEAR(back->x, film.x, 1) << film.x << ' ' << film.y;
+        EXPECT_NEAR(back->y, film.y, 1) << film.x << ' ' << film.y;
+    }
+    EXPECT_FALSE(camera.project({0, 0, -1}).has_value());
+}
+
 // Under radiance 1. In the middle of the film pi sin^2(theta) with tan(theta) = radius / distance of the pupil.
 TEST(LensSystem, WeightsAreTheIrradianceOfTheExitPupil) {
     for (const float radius : {0.001f, 0.008f}) {

@@ -34,8 +34,22 @@ TEST(SceneDigest, LightsCount) {
          [](Scene& s) { std::get<AreaLight>(s.lights[0]).equal_energy = true; },
          [](Scene& s) { std::get<ProjectionLight>(s.lights[9]).equal_energy = true; },
          [](Scene& s) { std::get<PointLight>(s.lights[1]).position.x = 1; },
+         [](Scene& s) { std::get<SpotLight>(s.lights[2]).scale = 2; },
+         [](Scene& s) { std::get<SpotLight>(s.lights[2]).position.x = 1; },
+         [](Scene& s) {
+             std::get<SpotLight>(s.lights[2]).axis = {1, 0, 0};
+         },
+         [](Scene& s) { std::get<SpotLight>(s.lights[2]).cos_falloff_start = 0.75f; },
          [](Scene& s) { std::get<SpotLight>(s.lights[2]).cos_total_width = 0.5f; },
          [](Scene& s) { std::get<SpotLight>(s.lights[2]).picture = 0; },
+         [](Scene& s) {
+             std::get<SpotLight>(s.lights[2]).picture = 0;
+             std::get<SpotLight>(s.lights[2]).picture_x = {1, 0, 0};
+         },
+         [](Scene& s) {
+             std::get<SpotLight>(s.lights[2]).picture = 0;
+             std::get<SpotLight>(s.lights[2]).picture_y = {1, 0, 0};
+         },
          [](Scene& s) { std::get<SpotLight>(s.lights[2]).profile = SpotFalloff::linear; },
          [](Scene& s) {
              std::get<DistantLight>(s.lights[3]).to_light = {1, 0, 0};

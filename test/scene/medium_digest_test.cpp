@@ -23,6 +23,12 @@ TEST(SceneDigest, MediaCount) {
     const std::type_identity<SparseGridMedium> sparse;
     const std::type_identity<FieldMedium> field;
     const Transform moved = Transform::translate({1, 0, 0});
+    const auto surface_with = [=](auto change) {
+        return [=](Scene& s) {
+            at(s, fog).surface.kind = BodySurface::Kind::coefficients;
+            change(at(s, fog).surface);
+        };
+    };
     expect_changes(&SceneDigest::materials,
                    {[=](Scene& s) { at(s, fog).sigma_a = 2; },
                     [=](Scene& s) { at(s, fog).sigma_s = 2; },
@@ -34,6 +40,16 @@ TEST(SceneDigest, MediaCount) {
                     [=](Scene& s) {
                         at(s, fog).phase = Draine{0, 0.5f};
                     },
+                    [=](Scene& s) { at(s, fog).is_body = true; },
+                    surface_with([](BodySurface&) {}),
+                    surface_with([](BodySurface& b) { b.kind = BodySurface::Kind::reflectance; }),
+                    surface_with([](BodySurface& b) { b.first.value = 2; }),
+                    surface_with([](BodySurface& b) { b.first.texture = 0; }),
+                    surface_with([](BodySurface& b) { b.second.value = 2; }),
+                    surface_with([](BodySurface& b) { b.second.texture = 0; }),
+                    surface_with([](BodySurface& b) { b.scale = 2; }),
+                    surface_with([](BodySurface& b) { b.eta = 1.5f; }),
+                    surface_with([](BodySurface& b) { b.g = 0.5f; }),
                     [=](Scene& s) { at(s, grid).box.p0.x = -1; },
                     [=](Scene& s) { at(s, grid).box.p1.z = 2; },
                     [=](Scene& s) { at(s, grid).box.world_from_medium = moved; },

@@ -128,6 +128,70 @@ TEST(MajorantWalk, BoundsTheDensityAlongRays) {
     EXPECT_GT(passed, 1000);
 }
 
+// A coefficient without a grid is 1 everywhere; both are scaled.
+TEST(MajorantWalk, BoundsCoefficientsWithAndWithoutColors) {
+    Scene scene;
+    ColorGrid& g = scene.color_grids.emplace_back();
+    g.size = {5, 3, 2};
+    TestUniforms uniforms(4);
+    for (std::size_t i = 0; i < g.count(); ++i)
+        g.values.push_back(RgbUnboundedSpectrum(
+            RgbColorSpace::srgb(), {uniforms.next_float(), uniforms.next_float(), uniforms.next_float()}));
+    for (const Index absorption : {no_index, Index{0}})
+        for (const Index scattering : {no_index, Index{0}}) {
+            scene.media = {
+                RgbGridMedium{.box = {}, .sigma_a = absorption, .sigma_s = scattering, .scale = 3}};
+            const SceneTables tables(scene);
+            const auto local = std::get<RgbGridMedium>(scene.media[0])
+                                   .at(tables.view(), 0, SampledWavelengths::sample_visible(0.5f));
+            int passed = 0;
+            for (int i = 0; i < 100; ++i) {
+                const Ray ray{{-1, uniforms.next_float(), uniforms.next_float()}, {1, 0, 0}};
+                MajorantWalk walk = local.majorants(ray);
+                MajorantSegment s;
+                while (walk.next(s))
+                    for (int k = 0; k < 4; ++k, ++passed) {
+                        const float t = s.t0 + (s.t1 - s.t0) * uniforms.next_float();
+                        const MediumPoint p = local.coefficients(ray.o + ray.d * t);
+                        for (int c = 0; c < 4; ++c)
+                            ASSERT_LE((p.sigma_a + p.sigma_s)[c], s.majorant[c] * 1.0001f + 1e-6f)
+                                << absorption << ' ' << scattering;
+                        if (absorption == no_index && scattering == no_index) {
+                            ASSERT_EQ(s.majorant[0], 6);
+                        }
+                    }
+            }
+            EXPECT_GE(passed, 400);
+        }
+}
+
+// The offset is in the unit of the grid. Nothing glows at 100 kelvins or below.
+TEST(GridMedium, GlowsAtItsTemperature) {
+    Scene scene;
+    for (const float value : {0.8f, 12.0f}) {
+        ScalarGrid& g = scene.scalar_grids.emplace_back();
+        g.size = {1, 1, 1};
+        g.values = {value};
+    }
+    const SampledWavelengths lambda = SampledWavelengths::sample_visible(0.5f);
+    const auto emission = [&](float offset) {
+        GridMedium medium;
+        medium.density = 0;
+        medium.temperature = 1;
+        medium.temperature_offset = offset;
+        medium.temperature_scale = 300;
+        medium.sigma_a = 0.5f;
+        medium.le_scale = 4;
+        scene.media = {medium};
+        const SceneTables tables(scene);
+        return medium.at(tables.view(), 0, lambda).coefficients({0.5f, 0.5f, 0.5f}).emission;
+    };
+    const SampledSpectrum glow = BlackbodySpectrum(3000).sample(lambda);
+    for (int c = 0; c < 4; ++c) EXPECT_NEAR(emission(2)[c] / (0.5f * 0.8f * 4 * glow[c]), 1, 1e-4);
+    EXPECT_TRUE(is_black(emission(11.75f)));
+    EXPECT_FALSE(is_black(emission(10)));
+}
+
 TEST(GradientNoise, IsZeroAtIntegersAndSmooth) {
     EXPECT_EQ(gradient_noise({3, -7, 250}), 0);
     EXPECT_FLOAT_EQ(gradient_noise({0.25f, 0.5f, 0.75f}), gradient_noise({256.25f, 0.5f, -255.25f}));

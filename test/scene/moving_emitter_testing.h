@@ -128,6 +128,7 @@ inline std::vector<Emitter> emitters() {
         {"mesh", sheet(false, false), a, b},
         {"mesh with normals", sheet(false, true), a, lengthened},
         {"mesh of two sides, flipped", sheet(false, false), a, lengthened, true, 0, true},
+        {"mesh with normals, flipped", sheet(false, true), a, lengthened, false, 0, true},
         {"mirrored mesh", sheet(false, false), mirrored_a, mirrored_b},
         {"mirrored mesh with normals", sheet(false, true), mirrored_a, mirrored_b},
         {"mesh that grows", sheet(false, false), tiny, large},

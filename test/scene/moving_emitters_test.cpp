@@ -127,6 +127,28 @@ TEST(MovingEmitters, BoundsAreTight) {
     EXPECT_NEAR(cone(Transform::rotate(179, {1, 0, 0})).cos_theta_o, std::cos(89.5 * pi / 180), 1e-3);
 }
 
+// Vertex normals decide which side shines, at any time those of that time.
+TEST(MovingEmitters, NormalsThatTurnOverTurnTheLight) {
+    TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {0, 1, 2}};
+    mesh.normals.assign(3, {0, 0, -1});
+    mesh.end_positions = mesh.positions;
+    mesh.end_normals.assign(3, {0, 0, 1});
+    const World world(Emitter{"mesh", mesh}.moving());
+    for (const float time : {0.0f, 0.4f, 0.6f, 1.0f}) {
+        const LightContext context{world.tables.view(), 0, time};
+        const float side = time < 0.5f ? -1 : 1;
+        const auto leaving = sample_le(context, 0, {0.3f, 0.6f}, {0.2f, 0.7f}, lambda);
+        ASSERT_TRUE(leaving.has_value()) << time;
+        EXPECT_EQ(leaving->n.z, side) << time;
+        EXPECT_GT(leaving->ray.d.z * side, 0) << time;
+        const auto seen_from = [&](float z) {
+            return sample_li(context, 0, {.p = {0.2f, 0.3f, z}}, {0.3f, 0.6f}, lambda).has_value();
+        };
+        EXPECT_TRUE(seen_from(side)) << time;
+        EXPECT_FALSE(seen_from(-side)) << time;
+    }
+}
+
 // Powers are means over the motion: a triangle that has no area at the start is found.
 TEST(MovingEmitters, WithoutAreaAtTheStartHavePower) {
     TriangleMesh mesh = emission::two_triangles();

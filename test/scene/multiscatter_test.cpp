@@ -220,10 +220,11 @@ TEST(MultipleScattering, ReplacesRoughMicrofacetsOnly) {
     EXPECT_TRUE(std::holds_alternative<DiffuseBsdf>(replaced(DiffuseBsdf{})));
     const TintedDielectricBsdf tinted{{1.5f, {rough, MicrofacetDistribution::beckmann}}};
     EXPECT_TRUE(std::holds_alternative<TintedDielectricBsdf>(replaced(tinted)));
-    const Bsdf tilted = replaced(TiltedBsdf{white_metal(rough), direction(10)});
+    const Bsdf tilted = replaced(TiltedBsdf{white_metal(rough), direction(10), 0.3f});
     ASSERT_TRUE(std::holds_alternative<TiltedBsdf>(tilted));
     EXPECT_TRUE(std::holds_alternative<MultiscatterConductorBsdf>(std::get<TiltedBsdf>(tilted).base));
     EXPECT_EQ(std::get<TiltedBsdf>(tilted).geometric_normal, direction(10));
+    EXPECT_EQ(std::get<TiltedBsdf>(tilted).shadowing, 0.3f);
 
     using RoughDiffuse = LayeredBsdf<DiffuseBsdf, MultiscatterDielectricBsdf>;
     using RoughConductor = LayeredBsdf<MultiscatterConductorBsdf, MultiscatterDielectricBsdf>;

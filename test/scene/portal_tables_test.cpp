@@ -4,7 +4,9 @@
 #include <gtest/gtest.h>
 #include <utility>
 
+#include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/stats/chi_squared.h"
+#include "montelux/scene/light/environment/portal_sampler.h"
 #include "montelux/scene/light/light_sampling.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/scene/shape/quadric.h"
@@ -84,6 +86,29 @@ TEST(Portals, PowerIsTheFluxThroughThem) {
     EXPECT_NEAR(static_cast<double>(lights.probability({}, 1, 0)) / point, 2 * pi * cross_section * 3, 1e-1);
     EXPECT_NEAR(static_cast<double>(lights.probability({}, 4, 0) / lights.probability({}, 3, 0)),
                 pi * 6 / (4 * pi * cross_section), 1e-5);
+}
+
+// Sums over the map to their last bit: checkpoints and ranks rely on it.
+TEST(Portals, TablesDoNotDependOnThreads) {
+    Image map(32, 32, {"R", "G", "B"});
+    TestUniforms uniforms(6);
+    for (float& texel : map.f32()) texel = uniforms.next_float();
+    const Portal portal(corners_of(-1, -1, 1, 1));
+    const auto made = [&] {
+        return PortalSampler(map, EnvironmentLayout::equal_area, Transform::rotate(30, {1, 2, 3}), portal);
+    };
+    const PortalSampler one = with_threads(1, made);
+    EXPECT_GT(one.fluence(), 0);
+    for (int i = 0; i < 10; ++i) {
+        const PortalSampler more = with_threads(2 + i % 3, made);
+        ASSERT_EQ(more.fluence(), one.fluence());
+        ASSERT_EQ(more.irradiance(), one.irradiance());
+        const Vec2f u = uniforms.next_2f();
+        const auto a = one.sample_direction(u), b = more.sample_direction(u);
+        ASSERT_TRUE(a && b);
+        EXPECT_EQ(a->wi, b->wi);
+        EXPECT_EQ(a->pdf, b->pdf);
+    }
 }
 
 } // namespace

@@ -46,6 +46,16 @@ TEST(SidedMaterial, IsThatOfTheSideOfThePath) {
     EXPECT_EQ(sheet.reflectance(-1), 0.3f);
 }
 
+// Vertex normals shade a surface, but leave its sides where they are.
+TEST(SidedMaterial, SidesAreThoseOfTheGeometricNormal) {
+    SidedSheet sheet({SidedMaterial{.front = {1}, .back = {2}}, grey_paint(0.3f), grey_paint(0.8f)});
+    for (const float x : {-1.0f, 1.0f}) { // turned away from the ray from above, towards the one from below
+        sheet.scene.meshes[0].normals.assign(3, normalize(Normal3f{x, 0, 0.2f}));
+        EXPECT_EQ(sheet.reflectance(1), 0.3f) << x;
+        EXPECT_EQ(sheet.reflectance(-1), 0.8f) << x;
+    }
+}
+
 TEST(SidedMaterial, IsBlackWhereNoneIsGiven) {
     EXPECT_EQ(SidedSheet({SidedMaterial{.front = {1}}, grey_paint(0.3f)}).reflectance(1), 0.3f);
     EXPECT_EQ(SidedSheet({SidedMaterial{.front = {1}}, grey_paint(0.3f)}).reflectance(-1), 0);

@@ -155,7 +155,8 @@ TEST(SkyLights, AreChosenByTheirPower) {
     EXPECT_NEAR(double(tables.view().light_sampler->probability({}, 0, 0)), disc / (disc + dome), 0.01);
 }
 
-// A picture of the sky holds the light of dome and disc, wherever the disc meets the texels' edges.
+// A picture of the sky holds the light of dome and disc, wherever the disc meets the texels' edges. The ground hides
+// the part of the disc that has set.
 TEST(SkyMap, HoldsTheLightOfSkyAndSun) {
     for (double elevation : {0.0, 33.0}) {
         SkySettings settings;
@@ -164,8 +165,14 @@ TEST(SkyMap, HoldsTheLightOfSkyAndSun) {
         const SkyModel sky(settings);
         const EnvironmentGrid grid(EnvironmentLayout::equirectangular, 256, 128);
         double sums[2] = {};
+        const Image pictures[] = {sky_picture(sky, 128, false), sky_picture(sky, 128, true)};
+        for (int y = 64; y < 128; ++y)
+            for (int x = 0; x < 256; ++x)
+                for (int c = 0; c < 3; ++c)
+                    ASSERT_EQ(pictures[1].value(x, y, c), pictures[0].value(x, y, c))
+                        << x << ' ' << elevation;
         for (bool with_sun : {false, true}) {
-            const Image picture = sky_picture(sky, 128, with_sun);
+            const Image& picture = pictures[with_sun];
             for (int y = 0; y < 64; ++y)
                 for (int x = 0; x < 256; ++x) {
                     const Vec3f rgb{picture.value(x, y, 0), picture.value(x, y, 1), picture.value(x, y, 2)};

@@ -169,6 +169,32 @@ TEST(NormalMap, ShadowedOneFadesTowardsTheTerminator) {
     }
 }
 
+// Light comes from the sampled direction in paths from the camera, from the other one in paths from lights.
+TEST(NormalMap, ShadowIsThatOfTheDirectionOfTheLight) {
+    const Normal3f up = normalize(Normal3f{0.3f, 0, 1});
+    const float alpha2 = 0.4f;
+    const DiffuseBsdf paint{SampledSpectrum(0.5f)};
+    const TiltedBsdf plain{paint, up}, shadowed{paint, up, alpha2};
+    const Vec3f wo = normalize(Vec3f{0.9f, 0.4f, 0.5f});
+    for (const TransportMode mode : {TransportMode::radiance, TransportMode::importance}) {
+        testing::TestStream one(2), other(2);
+        int found = 0;
+        for (int i = 0; i < 100; ++i) {
+            const auto a = plain.sample(wo, mode, one), b = shadowed.sample(wo, mode, other);
+            ASSERT_EQ(a.has_value(), b.has_value());
+            if (!a) continue;
+            ++found;
+            const float cosine = dot(up, mode == TransportMode::radiance ? a->wi : wo);
+            const float share = 2 / (1 + std::sqrt(1 + alpha2 * (1 / (cosine * cosine) - 1)));
+            EXPECT_NEAR(b->weight[0] / a->weight[0], share, 1e-5);
+            EXPECT_NEAR(shadowed.evaluate(wo, a->wi, mode, other).f[0] /
+                            plain.evaluate(wo, a->wi, mode, one).f[0],
+                        share, 1e-5);
+        }
+        EXPECT_GT(found, 50);
+    }
+}
+
 TEST(NormalMap, ShadowedOneIsMirroredWhereItFacesAway) {
     Sheet sheet;
     const Vec3f n = normalize(Vec3f{-0.8f, 0.1f, 0.3f});

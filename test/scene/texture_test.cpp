@@ -119,6 +119,38 @@ TEST(MipMap, LevelsKeepTheMean) {
     }
 }
 
+// Levels have half as many texels, rounded down: the last ones of odd sizes take three.
+TEST(MipMap, CoarserLevelsOfOddSizesUseEveryTexel) {
+    // The finest level with 2 x 2 texels; its values are those of the point filter.
+    const Image five = gray_image(5, 5);
+    const MipMap map(five);
+    const auto mean = [&](int x0, int y0, int x1, int y1) {
+        double sum = 0;
+        for (int y = y0; y < y1; ++y)
+            for (int x = x0; x < x1; ++x) sum += double(texel(x, y));
+        return sum / ((x1 - x0) * (y1 - y0));
+    };
+    const auto at = [&](float s, float t) {
+        return map.lookup({s, t}, {0.25f, 0}, {0, 0.25f}, TextureFilter::point, TextureWrap::clamp, 8).x;
+    };
+    EXPECT_NEAR(at(0.25f, 0.75f), mean(0, 0, 2, 2), 1e-6);
+    EXPECT_NEAR(at(0.75f, 0.75f), mean(2, 0, 5, 2), 1e-6);
+    EXPECT_NEAR(at(0.25f, 0.25f), mean(0, 2, 2, 5), 1e-6);
+    EXPECT_NEAR(at(0.75f, 0.25f), mean(2, 2, 5, 5), 1e-6);
+    // Each texel of three counts by a third, in rows and in columns.
+    for (auto [width, height] : {std::pair{3, 1}, {1, 3}, {3, 3}})
+        for (int i = 0; i < width * height; ++i) {
+            Image dot(width, height, {"Y"});
+            dot.set(i % width, i / width, 0, 1);
+            EXPECT_NEAR(
+                MipMap(dot)
+                    .lookup({0.5f, 0.5f}, {1, 0}, {0, 1}, TextureFilter::trilinear, TextureWrap::clamp, 8)
+                    .x,
+                1.0 / (width * height), 1e-6)
+                << width << " x " << height << ", texel " << i;
+        }
+}
+
 TEST(MipMap, FiltersKeepConstants) {
     Image image(32, 8, {"R", "G", "B"});
     for (std::size_t i = 0; i < image.pixel_count(); ++i)
@@ -152,6 +184,26 @@ TEST(MipMap, EwaIsAnisotropic) {
     EXPECT_GT(along, 0.8);
     EXPECT_NEAR(across, 0.5, 0.2);
     EXPECT_NEAR(isotropic, 0.5, 0.2);
+}
+
+// Stripes on the diagonal, whichever axis of the footprint is the long one. Rows of a picture run downwards: both axes
+// are mirrored.
+TEST(MipMap, SlantedFootprintsFollowThePicture) {
+    Image stripes(128, 128, {"Y"});
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 128; ++x) stripes.set(x, y, 0, ((x - y + 128) / 8) % 2 == 0 ? 1 : 0);
+    const MipMap map(stripes);
+    const Vec2f in_a_stripe{68.0f / 128, 1 - 64.5f / 128};
+    const Vec2f down{1.0f / 128, -1.0f / 128}, up{1.0f / 128, 1.0f / 128}; // along the stripes, and across
+    const auto value = [&](Vec2f dst0, Vec2f dst1) {
+        return map.lookup(in_a_stripe, dst0, dst1, TextureFilter::ewa, TextureWrap::repeat, 16).x;
+    };
+    for (float length : {8.0f, 12.0f}) {
+        EXPECT_GT(value(down * length, up), 0.9) << length;
+        EXPECT_GT(value(up, down * length), 0.9) << length;
+        EXPECT_LT(value(up * length, down), 0.7) << length;
+        EXPECT_LT(value(down, up * length), 0.7) << length;
+    }
 }
 
 TEST(MipMap, FarAwayAndNotANumber) {

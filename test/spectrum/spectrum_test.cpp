@@ -83,6 +83,22 @@ TEST(PiecewiseLinear, AgreesWithASearchForRandomKnots) {
     }
 }
 
+// The lines go on beyond both ends of the visible range, where the values are larger still.
+TEST(PiecewiseLinear, LargestValueMayBeAtEitherEndOfTheVisibleRange) {
+    const float lambda[] = {300, 900}, rising[] = {0, 600}, falling[] = {600, 0};
+    EXPECT_NEAR(PiecewiseLinear(lambda, rising).max_value(), 830 - 300, 1e-3);
+    EXPECT_NEAR(PiecewiseLinear(lambda, falling).max_value(), 900 - 360, 1e-3);
+}
+
+TEST(PiecewiseLinear, ScalesItsValuesAtKnotsAndBetweenThem) {
+    const float lambda[] = {380, 450, 451, 620, 800}, values[] = {1, 3, 0.5f, 8, 2};
+    const PiecewiseLinear plain(lambda, values);
+    PiecewiseLinear scaled = plain;
+    scaled.scale(2.5f);
+    for (float l = 360; l <= 830; l += 0.25f) ASSERT_NEAR(scaled(l), 2.5f * plain(l), 1e-4) << l;
+    EXPECT_EQ(scaled.max_value(), 20);
+}
+
 TEST(PiecewiseLinear, BadKnotsAreRefused) {
     const float ascending[] = {400, 500}, equal[] = {400, 400}, two[] = {1, 2}, one[] = {1};
     const float nan_value[] = {1, std::numeric_limits<float>::quiet_NaN()};

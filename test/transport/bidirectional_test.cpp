@@ -10,6 +10,7 @@
 
 #include "montelux/accel/accelerator.h"
 #include "montelux/mc/random/sample_stream.h"
+#include "montelux/scene/bsdf/diffuse.h"
 #include "montelux/scene/scene_tables.h"
 #include "montelux/transport/bidirectional_sample.h"
 
@@ -99,6 +100,81 @@ TEST(Bidirectional, WeightsInMediaAreThoseOfThePathAndSumToOne) {
             b.description.integrator.heuristic = heuristic;
             expect_consistent(b.description, 7000, lens ? "lens in fog" : "pinhole in fog");
         }
+}
+
+// A floor that mirrors by a delta and scatters below its coat: vertices where a path was mirrored are joined to others.
+TEST(Bidirectional, WeightsUnderSmoothCoatsAreThoseOfThePathAndSumToOne) {
+    SceneBuilder b = room_of_all(false);
+    b.scene.materials[0] = CoatedDiffuseMaterial{
+        gray(0.6f), CoatingParameters{.roughness = alpha_of(0), .eta = 1.5f, .albedo = gray(0), .g = {0}}};
+    expect_consistent(b.description, 3000, "smooth coat");
+}
+
+// What a light brings to a camera does not depend on which of the two a path starts from: per area of the surface and
+// solid angle, importance scatters as radiance does (Veach 1997, section 5.3).
+TEST(Bidirectional, ShadingNormalsScatterBothWaysAlike) {
+    SampleStream stream({.seed = 1}, 0, 0, 0);
+    SubpathVertex v;
+    v.s.ng = {0, 0, 1};
+    v.surface.frame = Frame::from_normal(normalize(Vec3f{0.3f, -0.4f, 1}));
+    v.surface.bsdf = DiffuseBsdf{SampledSpectrum(0.6f)};
+    const std::array<Vec3f, 4> directions{normalize(Vec3f{0, 0, 1}), normalize(Vec3f{0.9f, 0.1f, 0.5f}),
+                                          normalize(Vec3f{-0.2f, -0.7f, 1}),
+                                          normalize(Vec3f{0.4f, -0.3f, 0.6f})};
+    for (const Vec3f to_light : directions)
+        for (const Vec3f to_lens : directions) {
+            v.wo = v.surface.frame.to_local(to_light);
+            const Vec3f wi = v.surface.frame.to_local(to_lens);
+            const float importance = v.evaluate(v.wo, wi, TransportMode::importance, stream).f[0] *
+                                     v.adjoint_correction(wi) / v.cosine(to_lens);
+            const float radiance =
+                v.evaluate(wi, v.wo, TransportMode::radiance, stream).f[0] / v.cosine(to_light);
+            EXPECT_GT(radiance, 0);
+            EXPECT_NEAR(importance / radiance, 1, 1e-5);
+        }
+}
+
+// Splats count as far from the centres of the outermost pixels as their filter reaches, along both axes. A lamp shines
+// on a wall that fills the picture.
+TEST(Bidirectional, SplatsReachAsFarAsTheFilter) {
+    SceneBuilder b;
+    b.add_mesh(square(Transform::scale({2, 2, 1})), b.add(DiffuseMaterial{gray(0.5f)}));
+    b.scene.lights.push_back(PointLight{white_light(b.scene), white_scale(), {0, 0, 1}});
+    b.look({0, 0, 4}, {0, 0, 0}, 28);
+    IntegratorSettings& settings = b.description.integrator;
+    settings.method = IntegratorKind::light_tracing;
+    settings.max_depth = 1;
+    const SceneTables tables(b.description.scene, settings.environments(), settings.light_sampling,
+                             settings.surfaces(), true);
+    const Accelerator accelerator(tables.view());
+    const Camera camera(b.description.scene.camera, film_width, film_width);
+    const PixelBounds crop{5, 4, 11, 12};
+    for (const Vec2f radius : {Vec2f{0.5f, 2}, Vec2f{2, 0.5f}}) {
+        const BidirectionalIntegrator integrator(settings, camera, 0.125f, crop, radius, false);
+        RayTracer tracer(accelerator);
+        BidirectionalMemory memory;
+        SplatList splats;
+        for (std::uint64_t i = 0; i < 20000; ++i) {
+            SampleStream stream({.kind = SamplerKind::independent, .seed = 8}, 0, 0, i);
+            CameraSample sample{camera.generate_ray({8, 8}, {}),
+                                SampledWavelengths::sample_visible(stream.next_1d())};
+            sample.splats = &splats;
+            integrator.estimate(tables.view(), tracer, sample, stream, memory, nullptr);
+        }
+        Point2f low{16, 16}, high{0, 0};
+        for (const Splat& splat : splats) {
+            low = {std::min(low.x, splat.film.x), std::min(low.y, splat.film.y)};
+            high = {std::max(high.x, splat.film.x), std::max(high.y, splat.film.y)};
+        }
+        const auto expect_just_within = [](float distance) {
+            EXPECT_GE(distance, 0);
+            EXPECT_LT(distance, 0.25f);
+        };
+        expect_just_within(low.x - (5.5f - radius.x));
+        expect_just_within(low.y - (4.5f - radius.y));
+        expect_just_within(10.5f + radius.x - high.x);
+        expect_just_within(11.5f + radius.y - high.y);
+    }
 }
 
 // Three edges at two wavelengths of four: strategy s joins edge s - 1.

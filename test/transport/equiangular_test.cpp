@@ -107,6 +107,30 @@ TEST(Equiangular, SingleScatteringOfABeam) {
         "spot light", 5e-4);
 }
 
+// A black screen between lamp and ray that comes or goes meanwhile.
+TEST(Equiangular, ShadowsAreThoseOfTheTimeOfTheRay) {
+    const auto radiance = [](const Transform& start, const Transform& end, float time) {
+        VolumeScene b = lamp_in_fog(true);
+        b.scene.lights.push_back(PointLight{SceneSpectrum(3.0f), 1, {lamp_beside, 0, lamp_z}});
+        const Transform upright = Transform::rotate(90, {0, 1, 0}) * Transform::scale({10, 10, 1});
+        const Index screen = b.add_mesh(square(upright), b.add(DiffuseMaterial{gray(0)}));
+        b.scene.world_shapes.pop_back();
+        b.scene.objects.push_back({.shapes = {screen}});
+        b.scene.motions.emplace_back(start, end);
+        b.scene.instances.push_back({0, start, 0});
+        Ray ray = through_fog;
+        ray.time = time;
+        return volume_radiance(b.description, ray, 2000).total.mean();
+    };
+    const Transform between = Transform::translate({0.5 * double(lamp_beside), 0, 0}),
+                    aside = Transform::translate({0, 30, 0});
+    const double lit = radiance(aside, aside, 0);
+    EXPECT_GT(lit, 0);
+    EXPECT_EQ(radiance(between, between, 0), 0);
+    EXPECT_NEAR(radiance(between, aside, 1), lit, 1e-6 * lit);
+    EXPECT_EQ(radiance(aside, between, 1), 0);
+}
+
 // Scattering hits these lamps, too: three strategies share the light, by similar parts since the lamps are large.
 enum class Lamp { sphere, mesh, in_other_fog, in_grid, in_uneven_fog };
 constexpr Lamp lamps[] = {Lamp::sphere, Lamp::mesh, Lamp::in_other_fog, Lamp::in_grid, Lamp::in_uneven_fog};

@@ -290,6 +290,13 @@ TEST(Casters, AreSmoothAndAtRest) {
     EXPECT_EQ(count(flint), 0u);
     EXPECT_EQ(count(ThinDielectricMaterial{1.5f}), 0u);
 
+    // A mesh that deforms is elsewhere at other times.
+    SceneBuilder bending(b);
+    TriangleMesh folded = mesh;
+    for (const Point3f& p : mesh.positions) folded.end_positions.push_back(p + Vec3f{0, 0, p.x});
+    bending.add_mesh(folded, bending.add(mirror()));
+    EXPECT_TRUE(Casters(SceneTables(bending.scene).view()).all().empty());
+
     // Lights of all kinds but those all around.
     const SceneSpectrum white = white_light(b.scene);
     b.scene.lights.push_back(PointLight{white, 1, {0, 0, 2}});

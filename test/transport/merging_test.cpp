@@ -151,15 +151,10 @@ struct Sums {
         });
         const LightPath& light = (*light_paths)[static_cast<std::size_t>(part - map->parts().begin())];
         if (!light.has_end) return;
-        const FoundPath path{found.s,
-                             found.t,
-                             light.end,
-                             std::span(light.vertices).first(found.s - 1),
-                             found.camera,
-                             found.lens,
-                             found.densities,
-                             0,
-                             {}};
+        const FoundPath path{
+            found.s,      found.t,     light.end,       std::span(light.vertices).first(found.s - 1),
+            found.camera, found.lens,  found.densities, 0,
+            {},           found.merged};
         const PathDensities d = densities(path);
         const double weight = strategy_weight(d, found.s + found.t + found.s, heuristic, scratch);
         ++merged;

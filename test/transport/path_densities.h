@@ -54,7 +54,11 @@ class Recomputed {
     Recomputed(const SceneView& scene, const Camera& camera, const FoundPath& path)
         : scene_(scene), path_(path), n_(path.s + path.t) {
         d.reset(n_);
-        d.delta = path.densities.delta;
+        // Where a subpath has gone on by a delta; not where two of them are joined or merged.
+        for (std::size_t i = 1; i + 1 < n_; ++i) {
+            const bool is_joint = i == path.s || (path.merged == nullptr && i + 1 == path.s);
+            d.delta[i] = !is_joint && vertex(i).delta ? 1 : 0;
+        }
         d.light_paths = path.densities.light_paths;
         const LightEnd& end = path.end;
         const LightContext context{scene, end.light, 0};

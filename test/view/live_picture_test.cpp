@@ -198,6 +198,20 @@ TEST(PictureStatistics, OfAnEmptyPictureAreUnknown) {
     EXPECT_EQ(s.visible, 1);
 }
 
+TEST(PictureStatistics, ErrorsBeyondTheHistogramCountInItsOuterBins) {
+    std::vector<LivePixel> pixels;
+    for (const float error : {0.0f, 1e-9f, 1e-5f, 11.0f, 1e3f, 1e9f, 1e30f}) {
+        LivePixel& p = pixels.emplace_back();
+        p.mean.fill(1);
+        p.error.fill(error);
+    }
+    const ErrorHistogram histogram = statistics_of(pixels, {}).histogram;
+    ASSERT_EQ(histogram.counts.size(), ErrorHistogram::bins);
+    EXPECT_EQ(histogram.counts.front(), 3u);
+    EXPECT_EQ(histogram.counts.back(), 4u);
+    EXPECT_EQ(histogram.infinite, 0u);
+}
+
 TEST(TileMessage, HasTheBytesOfTheProtocol) {
     const LiveTile tile{{16, 32, 18, 33}, {1.0f, 2.0f}};
     const ViewLayer half{"error", "error", 1}, exact{"samples", "count", 1, true};

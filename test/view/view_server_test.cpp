@@ -210,6 +210,28 @@ TEST_F(ViewServerTest, PagesAreToldWhatHappens) {
     while (next(*socket, "progress")["target_error"] != 0.5) continue;
 }
 
+// The picture has 40 columns and 24 rows.
+TEST_F(ViewServerTest, PixelsOutsideOfThePictureAreRefused) {
+    const auto socket = watching();
+    const auto is_answered = [&](int x, int y) {
+        const auto ask_for = [&](int column, int row) {
+            ask(*socket, Json{{"type", "pixel"}, {"x", column}, {"y", row}}.dump());
+        };
+        ask_for(x, y);
+        ask_for(0, 0); // answers keep the order of the requests
+        const Json first = next(*socket, "pixel");
+        const bool answered = first["x"] == x && first["y"] == y;
+        if (answered) next(*socket, "pixel");
+        return answered;
+    };
+    EXPECT_TRUE(is_answered(39, 23));
+    EXPECT_FALSE(is_answered(39, 24));
+    EXPECT_FALSE(is_answered(40, 23));
+    EXPECT_TRUE(is_answered(0, 23));
+    EXPECT_FALSE(is_answered(0, 39));
+    EXPECT_FALSE(is_answered(24, 1000));
+}
+
 TEST_F(ViewServerTest, ManyWatchAndTheLastHearGoodbye) {
     const auto a = watching(), b = watching();
     { const auto gone = watching(); } // closed without a word

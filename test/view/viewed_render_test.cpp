@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstring>
 #include <gtest/gtest.h>
+#include <optional>
 #include <random>
 #include <thread>
 
@@ -105,6 +106,22 @@ TEST(ViewedRender, ClockStandsStillWhilePaused) {
     watched.render.resume();
     watched.wait();
     EXPECT_EQ(watched.last->report().stop, RenderStop::time);
+}
+
+TEST(ViewedRender, SnapshotsGoOnAfterAPause) {
+    RenderSession session(viewed_scene(1u << 20), {});
+    Watched watched(session, {});
+    ASSERT_TRUE(eventually([&] { return watched.render.status().progress.samples_done > 0; }));
+    watched.render.pause();
+    ASSERT_TRUE(eventually([&] { return watched.render.status().state == ViewState::paused; }));
+    const auto still = watched.render.snapshot(1);
+    ASSERT_TRUE(still);
+    watched.render.resume();
+    ASSERT_TRUE(
+        eventually([&] { return watched.render.status().progress.samples_done > still->report.samples; }));
+    std::optional<RenderSnapshot> later;
+    ASSERT_TRUE(eventually([&] { return (later = watched.render.snapshot(10)).has_value(); }));
+    EXPECT_GT(later->report.samples, still->report.samples);
 }
 
 // A render to an error, stopped by a smaller one later, is the render to the smaller one.
@@ -242,6 +259,23 @@ TEST(OrbitCamera, TurnsAboutWhatItLooksAt) {
     }
     const CameraSettings still = orbited({}, {0, 0, 1}, {});
     EXPECT_EQ(eye_of(still), (Vec3d{0, 0, 0}));
+}
+
+// A camera that moves by 2 to its right and 1 forwards while the shutter is open.
+TEST(OrbitCamera, TurnsTheMotionOfTheCamera) {
+    CameraSettings camera;
+    camera.world_from_camera = Transform::look_at({0, 1, -5}, {0, 1, 0}, {0, 1, 0})->inverse();
+    const Vec3d pivot{0, 1, 0}, right = camera.world_from_camera.vector(Vec3d{1, 0, 0}), forward{0, 0, 1};
+    camera.motion.emplace(camera.world_from_camera,
+                          Transform::translate(2.0 * right + forward) * camera.world_from_camera);
+    const CameraSettings turned = orbited(camera, pivot, {90, 0, 1});
+    ASSERT_TRUE(turned.motion);
+    // From where it stands now its right is what was forward, and forward what was its left.
+    const Vec3d start = pivot + 5.0 * right, end = start + 2.0 * forward - right;
+    EXPECT_NEAR(length(turned.motion->start().point(Vec3d{0, 0, 0}) - start), 0, 1e-9);
+    EXPECT_NEAR(length(turned.motion->end().point(Vec3d{0, 0, 0}) - end), 0, 1e-9);
+    EXPECT_NEAR(length(turned.motion->end().vector(Vec3d{0, 0, 1}) + right), 0, 1e-9);
+    EXPECT_FALSE(orbited(CameraSettings{}, pivot, {90, 0, 1}).motion);
 }
 
 } // namespace

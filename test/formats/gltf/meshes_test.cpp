@@ -83,6 +83,21 @@ TEST(GltfMeshes, SparseAccessors) {
     }
 }
 
+// The stride is that of the base view alone: sparse values lie packed.
+TEST(GltfMeshes, SparseAccessorsOfInterleavedViews) {
+    Model m;
+    m.add<float>({0, 0, 0, 7, 1, 0, 0, 7, 0, 1, 0, 7}, "VEC4");
+    m.add<std::uint8_t>({0, 2}, "SCALAR");
+    m.add<float>({2, 3, 4, 5, 6, 8}, "VEC3");
+    m.add<float>({9, 9, 9, 9}, "VEC4"); // behind the sparse values
+    m.views += R"(, {"buffer": 0, "byteLength": 48, "byteStride": 16})";
+    m.accessors +=
+        R"(, {"bufferView": 4, "componentType": 5126, "count": 3, "type": "VEC3", "sparse": {"count": 2,
+        "indices": {"bufferView": 1, "componentType": 5121}, "values": {"bufferView": 2}}})";
+    EXPECT_EQ(mesh_of(load_model(m.text(one_mesh(attributes(R"("POSITION": 4)"))))).positions,
+              (std::vector<Point3f>{{2, 3, 4}, {1, 0, 0}, {5, 6, 8}}));
+}
+
 // Of four vertices two are sparse, and a primitive uses three.
 TEST(GltfMeshes, SparseAccessorsOfSharedVertices) {
     Model m;

@@ -270,6 +270,9 @@ TEST(MitsubaEmitters, SunByPlaceAndTime) {
     expect_near(Vec3f(summer), {0.447173f, -0.00704427f, 0.89442f}, 2e-4f);
     expect_near(Vec3f(mitsuba::sun_position({})), {0.0513854f, 0.691748f, 0.720308f}, 2e-4f);
     EXPECT_NEAR(length(morning), 1, 1e-9);
+    // Minutes and seconds are parts of the hour.
+    expect_near(Vec3f(mitsuba::sun_position({.hour = 15, .minute = 30, .second = 45})),
+                Vec3f(mitsuba::sun_position({.hour = 15 + 1845.0 / 3600})), 1e-6f);
 }
 
 TEST(MitsubaEmitters, OthersAreRefused) {

@@ -186,6 +186,19 @@ TEST(MitsubaFilms, Samplers) {
     EXPECT_TRUE(warns);
 }
 
+TEST(MitsubaFilms, SeedsOfSamplers) {
+    const auto seed = [](const std::string& type, const std::string& properties) {
+        return load_scene_text("<sensor type=\"perspective\"><sampler type=\"" + type + "\">" + properties +
+                               "</sampler></sensor>")
+            .description.sampler.seed;
+    };
+    for (const char* type : {"independent", "stratified", "ldsampler"}) {
+        EXPECT_EQ(seed(type, ""), 0u) << type;
+        EXPECT_EQ(seed(type, R"(<integer name="seed" value="7"/>)"), 7u) << type;
+        EXPECT_EQ(seed(type, R"(<integer name="seed" value="9000000001"/>)"), 9000000001u) << type;
+    }
+}
+
 TEST(MitsubaIntegrators, DepthCountsSegments) {
     const auto depth = [](const std::string& type, const char* value) {
         return load_scene_text("<integrator type=\"" + type + R"("><integer name="max_depth" value=")" +

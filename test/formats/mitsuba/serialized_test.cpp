@@ -160,6 +160,13 @@ TEST(MitsubaSerialized, OtherFiles) {
     for (std::size_t i = offset_beyond.size() - 12; i < offset_beyond.size() - 4; ++i)
         offset_beyond[i] = 0xff;
     expect_error(offset_beyond, "beyond the end", 1);
+    // Each bit of the offset's upper half alone is 4 GiB or more.
+    for (std::size_t bit = 32; bit < 64; ++bit) {
+        Bytes far_beyond = file(4, {triangle_content(4, 0), triangle_content(4, 1)});
+        std::uint8_t& byte = far_beyond[far_beyond.size() - 12 + bit / 8];
+        byte = static_cast<std::uint8_t>(byte | 1u << bit % 8);
+        expect_error(far_beyond, "beyond the end", 1);
+    }
     Bytes many = file(4, {triangle_content(4, 0)});
     for (std::size_t i = many.size() - 4; i < many.size(); ++i) many[i] = 0xff;
     expect_error(many, "ends early", 1);

@@ -86,6 +86,30 @@ TEST(MitsubaBitmap, EqualFilesAreReadOnce) {
     EXPECT_EQ(looks.files.files_read().size(), 1u);
 }
 
+// One name in two folders is two pictures; other spellings of a path are one.
+TEST(MitsubaBitmap, FoldersTellFilesApart) {
+    const auto texture = [](const std::string& file) {
+        return R"(<bsdf type="diffuse"><texture type="bitmap" name="reflectance">
+            <string name="filename" value=")" +
+               file + R"("/></texture></bsdf>)";
+    };
+    Looks looks(texture("a/p.pfm") + texture("b/p.pfm") + texture("b/./p.pfm"),
+                {{"a/p.pfm", test::picture_file(1, {test::upper_left})},
+                 {"b/p.pfm", test::picture_file(1, {test::lower_right})}});
+    std::vector<SpectrumParameter> parameters;
+    for (std::size_t i = 0; i < looks.graph.objects.size(); ++i)
+        if (looks.graph.objects[i].kind == "bsdf") {
+            mitsuba::Plugin bsdf(looks.graph, i);
+            parameters.push_back(
+                looks.textures.spectrum(bsdf, "reflectance", 0.5f, SpectrumUse::reflectance));
+        }
+    ASSERT_EQ(parameters.size(), 3u);
+    looks.expect_albedo(parameters[0], {0.5f, 0.5f}, test::upper_left);
+    looks.expect_albedo(parameters[1], {0.5f, 0.5f}, test::lower_right);
+    looks.expect_albedo(parameters[2], {0.5f, 0.5f}, test::lower_right);
+    EXPECT_EQ(looks.scene.images.size(), 2u);
+}
+
 std::vector<std::uint8_t> grey_bytes(std::uint8_t value) {
     const std::string header = "P5 2 2 255\n";
     std::vector<std::uint8_t> bytes(header.begin(), header.end());

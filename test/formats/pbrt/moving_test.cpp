@@ -51,6 +51,23 @@ TEST(PbrtTransforms, ShapesInstancesAndCamerasMove) {
     EXPECT_TRUE(std::get<Sphere>(d.scene.quadrics[1]).world_from_object == Transform());
 }
 
+TEST(PbrtTransforms, WhatIsInTheSpaceOfAMovingCameraFollowsIt) {
+    const SceneDescription d = parse(R"(
+        Translate -1 0 0
+        ActiveTransform EndTime Translate 0 0 -5 Rotate 90 0 1 0 ActiveTransform All
+        Camera "perspective"
+        WorldBegin
+        CoordSysTransform "camera" Shape "sphere")");
+    ASSERT_TRUE(d.scene.camera.motion.has_value());
+    ASSERT_EQ(d.scene.instances.size(), 1u);
+    ASSERT_NE(d.scene.instances[0].motion, no_index);
+    const Motion& motion = d.scene.motions.at(d.scene.instances[0].motion);
+    expect_near(motion.at(0).point(Vec3f(0, 0, 2)), {1, 0, 2});
+    for (const float time : {0.f, 0.5f, 1.f})
+        for (const Vec3f p : {Vec3f(), Vec3f(1, 0, 0), Vec3f(0, 1, 2)})
+            expect_near(motion.at(time).point(p), d.scene.camera.motion->at(time).point(p));
+}
+
 TEST(PbrtTransforms, WhatCannotMoveStaysWithAWarning) {
     Warnings warnings;
     const SceneDescription d = parse(R"(WorldBegin

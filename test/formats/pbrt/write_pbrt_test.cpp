@@ -173,18 +173,25 @@ TEST_F(WritePbrt, OwnTextures) {
               Texts());
 }
 
-// A large mesh with colours of vertices.
+// Large meshes with colours of vertices, opacities or both.
 TEST_F(WritePbrt, ColoredMeshesBecomeFiles) {
     SceneDescription d = parse("WorldBegin LightSource \"point\" Texture \"c\" \"spectrum\" \"vertexcolor\" "
                                "Material \"diffuse\" \"texture reflectance\" \"c\" Shape \"loopsubdiv\" "
                                "\"integer levels\" 4 \"point3 P\" [0 0 0 1 0 0 0 1 0 0 0 1] "
                                "\"integer indices\" [0 2 1 0 1 3 1 2 3 0 3 2]");
     TriangleMesh& mesh = d.scene.meshes.at(0);
+    std::vector<Vec3f> colors;
+    std::vector<float> opacities;
     for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-        mesh.colors.push_back({0.25f, 0.5f, static_cast<float>(i)});
+        colors.push_back({0.25f, 0.5f, static_cast<float>(i)});
+        opacities.push_back(0.125f * static_cast<float>(i % 8));
         mesh.second_uvs.push_back({0.5f, static_cast<float>(i)});
-        mesh.opacities.push_back(0.125f * static_cast<float>(i % 8));
     }
+    mesh.colors = colors;
+    EXPECT_EQ(test::expect_round_trip(d).messages(), Texts());
+    mesh.opacities = opacities;
+    EXPECT_EQ(test::expect_round_trip(d).messages(), Texts());
+    mesh.colors.clear();
     EXPECT_EQ(test::expect_round_trip(d).messages(), Texts());
 }
 

@@ -101,6 +101,30 @@ TEST(PiecewiseConstant2D, EdgesOfTheSquareStayInDrawableCells) {
         }
 }
 
+TEST(PiecewiseConstant2D, CellsOfTallAndWideTablesHaveTheirDensity) {
+    struct Size {
+        std::uint32_t columns, rows;
+    };
+    for (const Size size : {Size{2, 5}, Size{5, 2}, Size{1, 4}, Size{4, 1}}) {
+        const auto [nx, ny] = size;
+        std::vector<double> values(nx * ny);
+        for (std::size_t i = 0; i < values.size(); ++i) values[i] = static_cast<double>(1 + i * i);
+        const PiecewiseConstant2D d(values, nx, ny);
+        for (std::uint32_t j = 0; j < ny; ++j)
+            for (std::uint32_t i = 0; i < nx; ++i) {
+                const Vec2d middle{(i + 0.5) / nx, (j + 0.5) / ny};
+                EXPECT_EQ(d.pdf(middle), d.cell_pdf(i, j)) << nx << ": " << i << ", " << j;
+                const auto u = d.inverse(middle);
+                ASSERT_TRUE(u);
+                const auto s = d.sample(*u);
+                EXPECT_TRUE(s.column == i && s.row == j) << nx << ": " << i << ", " << j;
+            }
+        // The far edges belong to the last cells.
+        EXPECT_EQ(d.pdf(Vec2d{1, 1}), d.cell_pdf(nx - 1, ny - 1)) << nx;
+        EXPECT_TRUE(d.inverse(Vec2d{1, 1})) << nx;
+    }
+}
+
 // One bright cell among a million: the faint ones keep their share, and the density integrates to one.
 TEST(PiecewiseConstant2D, HugeRangeLosesNothing) {
     std::uint32_t n = 1024;

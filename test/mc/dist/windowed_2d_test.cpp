@@ -116,6 +116,24 @@ TEST(WindowedPiecewise2D, DarkWindowsBesideGlareAreExact) {
     }
 }
 
+// A cell that is not zero is drawn in its window, however faint it is beside the whole; a zero is not.
+TEST(WindowedPiecewise2D, TheFaintestCellsBesideGlareAreDrawn) {
+    const std::vector<double> values{0, 1e-300, 1e-30, 1};
+    const WindowedPiecewise2D d(values, 4, 1);
+    EXPECT_FALSE(d.sample({0.5, 0.5}, {{0, 0}, {0.25, 1}}));
+    for (const double left : {0.25, 0.5}) {
+        const Window2D w{{left - 0.25, 0}, {left + 0.25, 1}};
+        for (const double u : {0.0, 0.5, 0.875}) {
+            const auto s = d.sample({u, 0.5}, w);
+            ASSERT_TRUE(s) << left;
+            EXPECT_GE(s->p.x, 0.25);
+            EXPECT_GT(s->pdf, 0);
+            EXPECT_EQ(d.pdf(s->p, w), s->pdf);
+        }
+    }
+    for (const double x : {0.3, 0.6}) EXPECT_GT(d.pdf({x, 0.5}, {{0, 0}, {1, 1}}), 0) << x;
+}
+
 TEST(WindowedPiecewise2D, EdgesOfTheSquareStayInDrawableCells) {
     const std::vector<double> values{0, 0, 0, 0, /**/ 0, 3, 1, 0, /**/ 0, 0, 0, 0};
     const WindowedPiecewise2D d(values, 4, 3);

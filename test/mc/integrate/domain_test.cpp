@@ -212,6 +212,39 @@ TEST(DomainProduct, IsThePartsSideBySide) {
     EXPECT_NEAR(finite.constant_volume(), 16 * pi / 6, 1e-12);
     EXPECT_EQ(Domain::product(finite, Domain({{0, infinity}})).constant_volume(), 0);
 }
+// Two uniform numbers for one coordinate, two for three, and one for one.
+TEST(DomainProduct, EachPartTakesItsOwnUniformNumbers) {
+    const auto decimal = [](std::span<const double> u, std::span<double> x) {
+        x[0] = u[0] + 10 * u[1];
+        return 1.0;
+    };
+    const Domain digits = Domain::mapped(2, 1, decimal, "digits"), sphere = Domain::sphere({0, 0, 0});
+    const auto mapped = [](const Domain& domain, const std::vector<double>& numbers) {
+        PointBuffer u(1, domain.uniforms()), x(1, domain.dimensions());
+        EXPECT_EQ(static_cast<std::size_t>(domain.uniforms()), numbers.size());
+        for (int d = 0; d < domain.uniforms(); ++d) u(0, d) = numbers[static_cast<std::size_t>(d)];
+        double volume = 1;
+        domain.map(u, x, {&volume, 1});
+        std::vector<double> point;
+        for (int d = 0; d < domain.dimensions(); ++d) point.push_back(x(0, d));
+        return point;
+    };
+    const std::vector<double> direction = mapped(sphere, {0.375, 0.125});
+    const std::vector<double> first =
+        mapped(Domain::product(Domain::product(digits, sphere), Domain::interval(5, 6)),
+               {0.25, 0.5, 0.375, 0.125, 0.75});
+    ASSERT_EQ(first.size(), 5u);
+    EXPECT_DOUBLE_EQ(first[0], 5.25);
+    for (std::size_t d = 0; d < 3; ++d) EXPECT_DOUBLE_EQ(first[1 + d], direction[d]) << d;
+    EXPECT_DOUBLE_EQ(first[4], 5.75);
+    const std::vector<double> last =
+        mapped(Domain::product(Domain::interval(5, 6), Domain::product(sphere, digits)),
+               {0.75, 0.375, 0.125, 0.25, 0.5});
+    ASSERT_EQ(last.size(), 5u);
+    EXPECT_DOUBLE_EQ(last[0], 5.75);
+    for (std::size_t d = 0; d < 3; ++d) EXPECT_DOUBLE_EQ(last[1 + d], direction[d]) << d;
+    EXPECT_DOUBLE_EQ(last[4], 5.25);
+}
 TEST(DomainMapped, PolarCoordinatesByPointAndByBatch) {
     auto point = [](std::span<const double> u, std::span<double> x) {
         x[0] = u[0] * std::cos(2 * pi * u[1]);

@@ -122,6 +122,22 @@ TEST(IntegrateCheckpoint, OfAnotherProblemIsRefused) {
     expect_error(text, [&] { integrate(product, square, TenSteps{}, budget, resume); });
     EXPECT_EQ(integrate(product, square, basic, budget, resume).evaluations, 9000u);
 }
+TEST(IntegrateCheckpoint, OfAnotherComponentIsRefused) {
+    auto pair = [](double first, double second) {
+        return Integrand::vector_valued(2, [=](std::span<const double> x, std::span<double> y) {
+            y[0] = first * x[0];
+            y[1] = second * x[0];
+        });
+    };
+    const CheckpointFile file;
+    const Domain line = Domain::unit_cube(1);
+    integrate(pair(1, 2), line, basic, {.evaluations = 5000}, {.checkpoint = file.path()});
+    const IntegrationOptions resume{.checkpoint = file.path(), .resume = true};
+    for (const Integrand& other : {pair(3, 2), pair(1, 3), pair(2, 1)})
+        expect_error("belongs to another integrand, domain, method or seed",
+                     [&] { integrate(other, line, basic, {.evaluations = 9000}, resume); });
+    EXPECT_EQ(integrate(pair(1, 2), line, basic, {.evaluations = 9000}, resume).evaluations, 9000u);
+}
 TEST(IntegrateCheckpoint, DamagedFilesAreRefused) {
     const CheckpointFile file;
     const IntegrationOptions resume{.checkpoint = file.path(), .resume = true};
@@ -172,6 +188,30 @@ TEST(IntegrateCheckpoint, UnwritableFileIsAnErrorBeforeTheRun) {
         integrate(f, Domain::interval(0, 1), basic, {}, {.checkpoint = "/no/such/folder/state"});
     });
     EXPECT_EQ(calls, 0);
+}
+
+// Reads all that the state below holds.
+std::vector<double> read_all(StateReader& state) {
+    EXPECT_EQ(state.get_word(), 7u);
+    EXPECT_EQ(state.get_text(), "twelve bytes");
+    return state.get_doubles();
+}
+
+TEST(StateReader, EveryStateThatIsCutShortIsRefused) {
+    StateWriter written;
+    written.put(7u);
+    written.put("twelve bytes");
+    written.put(std::vector<double>{0.5, -2});
+    const std::vector<std::uint64_t> words(written.words().begin(), written.words().end());
+    StateReader whole(words);
+    EXPECT_EQ(read_all(whole), (std::vector<double>{0.5, -2}));
+    EXPECT_TRUE(whole.at_end());
+    expect_error("ends too early", [&] { whole.get_word(); });
+    for (std::size_t size = 0; size < words.size(); ++size)
+        expect_error("ends too early", [&] {
+            StateReader cut({words.begin(), words.begin() + static_cast<std::ptrdiff_t>(size)});
+            read_all(cut);
+        });
 }
 
 } // namespace

@@ -89,6 +89,17 @@ TEST(IntegrateNonFinite, OnePointCountsOnceAndInNoComponent) {
     EXPECT_NEAR(r.value[0], 0.5, 5.5 * 0.005);
     EXPECT_NEAR(static_cast<double>(r.non_finite), 5000, 5.5 * 50);
 }
+TEST(IntegrateNonFinite, OneBadComponentTakesItsPointOutOfAll) {
+    auto f = Integrand::vector_valued(3, [](std::span<const double> x, std::span<double> y) {
+        y[0] = 1;
+        y[1] = x[0] < 0.5 ? std::numeric_limits<double>::quiet_NaN() : 2;
+        y[2] = 4;
+    });
+    const IntegrationResult r = integrate(f, Domain::unit_cube(1), basic, {.evaluations = 10'000});
+    EXPECT_EQ(2 * r.value[0], r.value[1]);
+    EXPECT_EQ(4 * r.value[0], r.value[2]);
+    EXPECT_NEAR(r.value[0], 0.5, 5.5 * 0.005);
+}
 TEST(IntegrateNonFinite, ThrowingPolicyNamesThePoint) {
     auto f = [](double x) { return x > 0.5 ? std::numeric_limits<double>::infinity() : 1.0; };
     expect_error("the integrand is inf at (0.", [&] {

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "montelux/mc/math/constants.h"
+#include "montelux/mc/math/incomplete_functions.h"
 #include "montelux/mc/math/special.h"
 
 namespace montelux {
@@ -96,6 +97,22 @@ TEST(Special, EndsAndArgumentsOutsideTheDomain) {
                               binomial_cdf(3, 10, -0.5),
                               binomial_upper(3, 10, nan)};
     for (std::size_t i = 0; i < std::size(outside); ++i) EXPECT_TRUE(std::isnan(outside[i])) << i;
+}
+
+// The density of one parameter 1 is a power: a x^(a-1), or b (1 - x)^(b-1).
+TEST(Special, BetaDensityAtItsEnds) {
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (const double c : {1.0, 1.5, 3.0, 7.0}) {
+        EXPECT_EQ(incomplete::beta_pdf(c, 1, 1), c);
+        EXPECT_EQ(incomplete::beta_pdf(1, c, 0), c);
+        EXPECT_EQ(incomplete::beta_pdf(c, 2, 1), 0);
+        EXPECT_EQ(incomplete::beta_pdf(2, c, 0), 0);
+        EXPECT_EQ(incomplete::beta_pdf(c, 0.5, 1), infinity);
+        EXPECT_EQ(incomplete::beta_pdf(0.5, c, 0), infinity);
+        // It is continuous there.
+        EXPECT_NEAR(incomplete::beta_pdf(c, 1, 1 - 1e-9), c, 1e-7);
+        EXPECT_NEAR(incomplete::beta_pdf(1, c, 1e-9), c, 1e-7);
+    }
 }
 
 TEST(Special, BinomialTailsByDirectSummation) {

@@ -1,5 +1,6 @@
 #include "test/near.h"
 #include <gtest/gtest.h>
+#include <utility>
 
 #include "montelux/mc/math/transform.h"
 
@@ -29,6 +30,18 @@ TEST(Transform, LookAtPutsTheTargetOnTheAxis) {
     ASSERT_TRUE(t);
     expect_near(t->point(Vec3d{4, 6, 3}), {0, 0, 5});
     EXPECT_FALSE(Transform::look_at({0, 0, 0}, {0, 0, 1}, {0, 0, 2}));
+}
+
+// Distinct primes, so that each entry counts; the last row and column do not.
+TEST(Transform, DeterminantOfTheLinearPart) {
+    Matrix4 m;
+    m.m = {{{2, 3, 5, 29}, {7, 11, 13, 31}, {17, 19, 23, 37}, {41, 43, 47, 53}}};
+    EXPECT_EQ(m.linear_determinant(), -78);
+    EXPECT_EQ(m.transposed().linear_determinant(), -78);
+    std::swap(m.m[0], m.m[1]);
+    EXPECT_EQ(m.linear_determinant(), 78);
+    const Matrix4 scaled = (Transform::rotate(37, {1, 2, -1}) * Transform::scale({2, -3, 0.5})).matrix();
+    EXPECT_NEAR(scaled.linear_determinant(), -3, 1e-12);
 }
 
 TEST(Transform, SingularMatrixHasNoInverse) {

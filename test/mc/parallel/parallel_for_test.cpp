@@ -76,10 +76,32 @@ TEST(ParallelReduceOrdered, BitIdenticalForAnyNumberOfThreads) {
         ThreadLimit limit(threads);
         for (int repeat = 0; repeat < 3; ++repeat) ASSERT_EQ(sum(), first) << threads;
     }
+    // More threads than a small machine has processors.
+    for (int threads : {1, 2, 5}) ASSERT_EQ(with_threads(threads, sum), first) << threads;
     // The other order does show.
     double backwards = parallel_reduce_ordered(
         300000, [&](std::int64_t i) { return term(299999 - i); }, plus);
     EXPECT_NE(backwards, first);
+}
+
+// One thread comes to the first of the last run's two values when all but one are done.
+TEST(ParallelReduceOrdered, CancelledInItsLastRunGivesNoResult) {
+    constexpr std::int64_t count = 2048;
+    const ThreadLimit one(1);
+    for (const std::int64_t last : {count - 1, count}) {
+        CancelFlag cancel;
+        std::int64_t mapped = 0;
+        const auto sum = parallel_reduce_ordered(
+            count,
+            [&](std::int64_t i) {
+                if (++mapped == last) cancel.request();
+                return i;
+            },
+            [](std::int64_t a, std::int64_t b) { return a + b; }, &cancel);
+        EXPECT_EQ(mapped, last);
+        // Nothing is missing when the last value is there.
+        EXPECT_EQ(sum.has_value(), last == count);
+    }
 }
 
 TEST(ParallelReduceOrdered, KeepsTheOrderOfACombinationThatDoesNotCommute) {

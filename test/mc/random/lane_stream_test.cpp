@@ -18,6 +18,7 @@ std::vector<SampleStream> streams(SamplerKind kind, int count) {
     for (int i = 0; i < count; ++i) {
         const SamplerSettings settings{kind, 11, 64, 1};
         SampleStream& s = r.emplace_back(settings, 3 + i % 2, 5, static_cast<std::uint64_t>(i));
+        if (kind == SamplerKind::independent && i % 2 == 1) s = s.branch(7); // with a key of its own
         for (int k = 0; k < i; ++k) s.next_1d(); // as paths that have taken different turns
     }
     return r;

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -250,6 +251,18 @@ TEST(SampleStream, BlueNoisePixelsOfABlockShareANet) {
                 }
         EXPECT_TRUE(is_net(points, 0)) << skip;
     }
+}
+
+// Pixels at one place of different tiles.
+TEST(SampleStream, BlueNoiseTilesDoNotRepeatNumbers) {
+    constexpr std::uint32_t width = 4096;
+    std::set<std::vector<double>> different;
+    for (std::uint32_t row = 0; row < 3; ++row)
+        for (std::uint32_t column = 0; column < 3; ++column)
+            different.insert(draw(SampleStream({SamplerKind::sobol_blue_noise, 5, 16, 2}, column * width + 7,
+                                               row * width + 9, 3),
+                                  6));
+    EXPECT_EQ(different.size(), 9u);
 }
 
 // All 24 permutations alike at the top digit and below a prefix. False alarms: 2 at 1e-9.

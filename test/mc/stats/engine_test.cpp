@@ -156,9 +156,18 @@ TEST(KolmogorovSmirnov, RejectsAShift) {
     std::vector<double> x;
     for (int i = 0; i < 20000; ++i) x.push_back(u.next());
     EXPECT_TRUE(kolmogorov_smirnov_test(x, [](double v) { return v; }).passes(significance));
-    EXPECT_FALSE(kolmogorov_smirnov_test(x, [](double v) {
-                     return std::clamp(v - 0.02, 0.0, 1.0);
-                 }).passes(significance));
+    for (const double shift : {0.02, -0.02})
+        EXPECT_FALSE(kolmogorov_smirnov_test(x, [=](double v) { return std::clamp(v - shift, 0.0, 1.0); })
+                         .passes(significance))
+            << shift;
+    // The largest distance of the law from the steps of the values, to either side.
+    const std::vector<double> early{0.125, 0.25}, late{0.75, 0.875}, apart{0.375, 0.625};
+    const auto distance = [](const std::vector<double>& values) {
+        return kolmogorov_smirnov_test(values, [](double v) { return v; }).statistic;
+    };
+    EXPECT_EQ(distance(early), 0.75);
+    EXPECT_EQ(distance(late), 0.75);
+    EXPECT_EQ(distance(apart), 0.375);
 }
 
 } // namespace

@@ -74,6 +74,8 @@ TEST(Estimate, PrintsConciseNotation) {
     std::ostringstream s;
     s << Estimate{1, 0.1, 10, 3};
     EXPECT_EQ(s.str(), "1.00(10) [3 non-finite]");
+    EXPECT_EQ(to_string(Estimate{1, 0.1, 10, 1}), "1.00(10) [1 non-finite]");
+    EXPECT_EQ(to_string(Estimate{1, 0.1, 10, 0}), "1.00(10)");
 }
 
 TEST(Estimate, ConfidenceIntervalIsNormal) {

@@ -183,11 +183,12 @@ TEST(SceneReferences, MediaNameTheParameter) {
 
     EXPECT_EQ(finish_error([](Scene& s) { s.camera.medium = 0; }),
               "test: the camera, medium: there is no medium 0; the scene has 0");
-    EXPECT_EQ(finish_error([](Scene& s) {
-                  s.meshes.emplace_back();
-                  s.shapes.push_back({.geometry = MeshIndex{0}, .material = 0, .media = {no_index, 3}});
-              }),
-              "test: shape 0, medium: there is no medium 3; the scene has 0");
+    for (const MediumInterface media : {MediumInterface{no_index, 3}, MediumInterface{3, no_index}})
+        EXPECT_EQ(finish_error([&](Scene& s) {
+                      s.meshes.emplace_back();
+                      s.shapes.push_back({.geometry = MeshIndex{0}, .material = 0, .media = media});
+                  }),
+                  "test: shape 0, medium: there is no medium 3; the scene has 0");
 }
 
 TEST(SceneReferences, TexturesNameTheirInputs) {

@@ -242,6 +242,18 @@ TEST_F(SceneBuilding, ImagesAreMadeFit) {
               "line 3: xyz.exr has neither channels R, G and B nor Y alone");
 }
 
+TEST_F(SceneBuilding, ImagesOfHalfsAreMadeFit) {
+    Image picture(2, 1, {"R", "G", "B"}, PixelFormat::f16);
+    const std::array<std::uint16_t, 6> halfs{0x7c00, 0xfc00, 0x7e01, 0x7bff, 0xfbff, 0x0001};
+    for (std::size_t i = 0; i < halfs.size(); ++i) picture.u16()[i] = halfs[i];
+    builder_.add_image(picture, "wood.exr", line(2));
+    // Infinities and a NaN, then the largest numbers and the smallest.
+    const std::array<std::uint16_t, 6> expected{0, 0, 0, 0x7bff, 0xfbff, 0x0001};
+    for (std::size_t i = 0; i < halfs.size(); ++i) EXPECT_EQ(scene_.images[0].u16()[i], expected[i]) << i;
+    EXPECT_EQ(messages_.warnings, (std::vector<std::string>{
+                                      "line 2: wood.exr has 3 values that are not finite; they count as 0"}));
+}
+
 TEST_F(SceneBuilding, EnvironmentsAreMadeFit) {
     Image grey(4, 4, {"Y"});
     grey.f32()[3] = 2;

@@ -103,6 +103,26 @@ TEST(Adaptive, EveryPhaseResumesWithTheSameBitsAndCanBeInterrupted) {
     EXPECT_EQ(check_every_step(ridge, {200'000, 1e-3}), (std::set<std::uint64_t>{0, 1, 2, 3}));
 }
 
+// Walkers find a part of the ridge that the first density misses: it is given up, but its samples count.
+TEST(Adaptive, EvaluationsOfDensitiesThatWereGivenUpCount) {
+    const KnownIntegral problem{rosenbrock_ridge, Domain(std::vector<Range>(4, {-5, 5})), {0}};
+    std::atomic<std::uint64_t> made = 0;
+    const Integrand f = problem.f.with_function([&](const PointBatch& x, ValueBatch y) {
+        made += x.count();
+        problem.f(x, y);
+    });
+    const Evaluator evaluator(f, problem.domain);
+    auto estimator = Adaptive{}.estimator({evaluator, 1});
+    const auto phase = [&] { return words_of(*estimator).front(); };
+    bool given_up = false;
+    while (!given_up) {
+        const std::uint64_t before = phase();
+        ASSERT_EQ(step(*estimator, {400'000, 1e-2}), StepOutcome::advanced);
+        EXPECT_EQ(estimator->tally().evaluations, made);
+        given_up = before == 3 && phase() == 2; // trains again after weighted samples
+    }
+}
+
 TEST(Adaptive, ResultsOfUniformPointsAreNotJudgedByTheTrainedDensity) {
     const KnownIntegral problem = two_peaks(6, 300);
     const Evaluator evaluator(problem.f, problem.domain);

@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -9,6 +11,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/special.h"
 #include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/parallel/physical_memory.h"
 #include "montelux/mc/stats/chi_squared.h"
 #include "montelux/mc/stats/z_test.h"
 
@@ -232,6 +235,45 @@ TEST(SampleChains, DrawsThatRunToInfinityAreWarnedOf) {
         EXPECT_NE(draws.warnings[0].find("run to infinity"), std::string::npos) << draws.warnings[0];
         for (double x : draws.states) ASSERT_TRUE(std::isfinite(x));
     }
+}
+
+// Walkers that cannot move, since the density is zero at all other points: proposals tell the random numbers.
+TEST(WalkerEnsemble, EveryStepHasRandomNumbersOfItsOwn) {
+    std::vector<double> asked;
+    const Integrand integers([&](double x) {
+        asked.push_back(x);
+        return x == std::floor(x) ? 0 : -no_bound;
+    });
+    const std::vector<Range> line{{-no_bound, no_bound}};
+    WalkerEnsemble ensemble(EnsembleMove::stretch, {integers, line}, {0, 1, 2, 3}, 5, 0);
+    std::vector<std::array<double, 4>> proposals;
+    for (int i = 0; i < 70'000; ++i) {
+        asked.clear();
+        ensemble.step(false);
+        ASSERT_EQ(asked.size(), 4u);
+        std::copy(asked.begin(), asked.end(), proposals.emplace_back().begin());
+    }
+    EXPECT_EQ(ensemble.moved(), 0u);
+    std::ranges::sort(proposals);
+    EXPECT_EQ(std::ranges::adjacent_find(proposals), proposals.end());
+}
+
+// Refused for its size, or else for a wrong number of starts: nothing runs.
+TEST(SampleChains, DrawsThatDoNotFitIntoMemoryAreRefused) {
+    auto refusal = [](double draws) {
+        ChainOptions options{.draws = static_cast<std::uint64_t>(draws)};
+        options.starts = {{0, 0}, {1, 1}};
+        try {
+            sample_chains(banana, Domain({{-5, 5}, {-5, 5}}), options);
+        } catch (const Error& error) {
+            return std::string(error.what());
+        }
+        return std::string("none");
+    };
+    const double all = physical_memory() / sizeof(double) / 4 / 2; // draws of four chains in two variables
+    EXPECT_NE(refusal(1.01 * all).find("GiB of memory; this machine has"), std::string::npos);
+    // Diagnostics take at most ten numbers for the two of a state.
+    EXPECT_NE(refusal(all / 7).find("2 starts were given"), std::string::npos);
 }
 
 TEST(SampleChains, SenselessOptionsAreRefused) {

@@ -7,6 +7,7 @@
 
 #include "montelux/mc/integrate/auto.h"
 #include "montelux/mc/integrate/cubature/cubature.h"
+#include "montelux/mc/integrate/cubature/cubature_regions.h"
 #include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/math/error.h"
 
@@ -350,6 +351,39 @@ TEST(Cubature, FindsAPeakThatItSawTheFaintestTailOf) {
     EXPECT_EQ(r.stop, StopReason::error_target);
     EXPECT_FALSE(r.warnings.empty()); // too narrow for a check by random points
     EXPECT_NEAR(r.value[0] / std::pow(2 * std::numbers::pi * width * width, 2), 1, 3e-3);
+}
+
+std::vector<std::uint64_t> saved_numbers(const CubatureRegions& regions) {
+    StateWriter state;
+    regions.save(state);
+    return {state.words().begin(), state.words().end()};
+}
+
+// What is saved of a region is all of it.
+TEST(CubatureRegions, ACopyHasAllNumbersOfTheRegion) {
+    for (int dimensions : {1, 2}) {
+        CubatureRegions one(dimensions, 2);
+        one.resize(1);
+        double next = 1;
+        for (const auto numbers : {one.centre(0), one.half_width(0), one.value(0), one.error(0),
+                                   one.face_error(0), one.lowest(0), one.highest(0)})
+            for (double& v : numbers) v = next++;
+        for (std::size_t c = 0; c < 2; ++c) {
+            one.series(0, c) = {next + 1, next + 2, next + 3};
+            for (bool upper : {false, true})
+                if (dimensions == 1) one.face(0, c, upper) = {next + 4, next + 5, upper ? 1.0 : 2.0};
+            next += 6;
+        }
+        one.marks(0) = {0, true, true, true, 1, true};
+        CubatureRegions copies(dimensions, 2);
+        copies.resize(2);
+        for (std::size_t r = 0; r < 2; ++r) copies.copy(r, one, 0);
+        CubatureRegions first = copies;
+        first.resize(1);
+        EXPECT_EQ(saved_numbers(first), saved_numbers(one)) << dimensions;
+        first.copy(0, copies, 1);
+        EXPECT_EQ(saved_numbers(first), saved_numbers(one)) << dimensions;
+    }
 }
 
 TEST(Cubature, TheUnitOfTheIntegrandDoesNotMatter) {

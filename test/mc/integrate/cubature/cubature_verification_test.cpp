@@ -8,6 +8,7 @@
 
 #include "montelux/mc/integrate/auto.h"
 #include "montelux/mc/integrate/cubature/cubature.h"
+#include "montelux/mc/integrate/cubature/cubature_check.h"
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/random/hash.h"
@@ -54,6 +55,24 @@ std::vector<Hidden> hidden() {
          }),
          Domain({{-1.3, 1.3}, {-1.3, 1.3}}), 2 * pi * 0.7 * 0.005 * std::sqrt(2 * pi)},
     };
+}
+
+// The range [1, 3] of the second component, widened by half of it, four claimed errors of a region of half of the
+// cube's volume, and a quarter of the tolerance: by 1 + 4 * 0.25 / 0.5 + 0.1.
+TEST(CubatureVerification, ValuesFarBelowTheRangeSurpriseLikeThoseFarAbove) {
+    CubatureRegions regions(1, 2);
+    regions.add_cube();
+    regions.half_width(0)[0] = 0.25;
+    regions.lowest(0)[1] = 1;
+    regions.highest(0)[1] = 3;
+    regions.error(0)[1] = 0.25;
+    constexpr double allowed = 3.1, tolerance = 0.4;
+    for (double beyond : {0.5, 100.0}) {
+        EXPECT_NEAR(surprise(regions, 0, 1, 3 + allowed + beyond, tolerance), beyond, 1e-12);
+        EXPECT_NEAR(surprise(regions, 0, 1, 1 - allowed - beyond, tolerance), beyond, 1e-12);
+    }
+    for (double value : {-2.0, 1.0, 2.0, 3.0, 6.0})
+        EXPECT_EQ(surprise(regions, 0, 1, value, tolerance), 0) << value;
 }
 
 // Parts of a long ridge between the points of one check: without more points for them, 5 of 6 claims were 3 to 16 errors

@@ -112,6 +112,30 @@ TEST(Grid, ErrorEstimateIsThatOfTheLastTwoGrids) {
     EXPECT_LT(r.evaluations, 40000u);
 }
 
+// The first grid has 32 cells, at whose points the cosine is 1 or -1; on finer ones its mean is zero.
+TEST(Grid, TwoGridsThatAgreeByAccidentDoNotHideTheDifferenceBefore) {
+    const Evaluator wave([](double x) { return 1 + std::cos(64 * std::numbers::pi * x); },
+                         Domain::unit_cube(1));
+    struct Case {
+        Method method;
+        double gain; // by which an error falls where the cells are halved
+    };
+    for (const Case& c : {Case{RiemannSum{}, 2}, Case{MidpointRule{}, 4}, Case{TrapezoidRule{}, 4}}) {
+        auto estimator = c.method.estimator({wave});
+        auto refined = [&] {
+            EXPECT_EQ(estimator->step({.max_evaluations = 1 << 20, .relative_error = 1e-30}),
+                      StepOutcome::advanced);
+            return estimator->tally();
+        };
+        EXPECT_NEAR(std::abs(refined().value[0] - 1), 1, 1e-12) << c.method.name();
+        EXPECT_NEAR(refined().standard_error[0], 1 / (c.gain - 1), 1e-12) << c.method.name();
+        const Tally agreed = refined(); // with the grid before
+        EXPECT_NEAR(agreed.value[0], 1, 1e-12) << c.method.name();
+        EXPECT_NEAR(agreed.standard_error[0], 1 / (c.gain - 1) / c.gain, 1e-12) << c.method.name();
+        EXPECT_NEAR(refined().standard_error[0], 0, 1e-12) << c.method.name();
+    }
+}
+
 TEST(Grid, KeepsPromises) {
     for (const Method& m : {Method(RiemannSum{}), Method(MidpointRule{}), Method(TrapezoidRule{})})
         expect_keeps_promises(m, 50000);

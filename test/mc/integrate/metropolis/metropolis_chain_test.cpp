@@ -198,5 +198,23 @@ TEST(ChainTrace, BatchesKeepMeanAndVarianceInConstantMemory) {
     EXPECT_GT(correlation_of_means({&trace, 1}, 0, 1), 0.999);
 }
 
+// Halves of n alternating values have the variance n / (n - 1); the variance of their means -1, -1, 2 and 2 is 3. R-hat
+// is the root of (n - 1) / n + 3 (n - 1) / n, whether chains or halves of a chain disagree.
+TEST(ChainTrace, SplitRHatFollowsItsFormula) {
+    for (int n : {4, 1000})
+        for (bool within_chains : {false, true}) {
+            std::vector<ChainTrace> chains(2, ChainTrace(1));
+            for (int c = 0; c < 2; ++c)
+                for (int i = 0; i < 2 * n; ++i) {
+                    const bool far_part = within_chains ? i >= n : c == 1;
+                    const double centre = far_part ? 2 : -1, value = centre + (i % 2 == 0 ? -1 : 1);
+                    chains[static_cast<std::size_t>(c)].add({&value, 1});
+                }
+            const double expected = 2 * std::sqrt((n - 1.0) / n);
+            EXPECT_NEAR(split_r_hat(chains, 0), expected, 1e-12) << n << within_chains;
+            EXPECT_EQ(summarize(chains, 0).r_hat, split_r_hat(chains, 0));
+        }
+}
+
 } // namespace
 } // namespace montelux

@@ -156,6 +156,23 @@ TEST(Quasi, WarnsOfWhatOneReplicateSaw) {
     EXPECT_FALSE(nothing.converged());
 }
 
+// Values of one sign have the mean of their magnitudes, whether sets grow or are replaced.
+TEST(Quasi, MagnitudesAreThoseOfThePointsThatCount) {
+    const KnownIntegral f = product(2);
+    const Evaluator evaluator(f.f, f.domain);
+    for (const Quasi& set : randomised_sets()) {
+        auto estimator = Method(set).estimator({evaluator, 1});
+        for (int doublings = 0; doublings < 3; ++doublings) {
+            ASSERT_EQ(estimator->step({.max_evaluations = 1 << 20, .relative_error = 1e-30}),
+                      StepOutcome::advanced);
+            const Tally tally = estimator->tally();
+            ASSERT_EQ(tally.absolute.size(), 1u);
+            EXPECT_NEAR(tally.absolute[0], tally.value[0], 1e-12)
+                << to_string(set.points) << ", " << doublings;
+        }
+    }
+}
+
 TEST(Quasi, KeepsPromises) {
     for (const Quasi& set : randomised_sets()) expect_keeps_promises(set, 3000);
     for (PointSetKind kind : {PointSetKind::sobol, PointSetKind::halton, PointSetKind::hammersley})

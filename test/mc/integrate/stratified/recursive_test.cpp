@@ -1,5 +1,7 @@
 // A5: recursive stratified sampling.
 #include "test/mc/integrate/estimator_checks.h"
+#include <atomic>
+#include <cmath>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -93,6 +95,19 @@ TEST(Recursive, TargetsAreMet) {
 TEST(Recursive, KeepsPromises) {
     expect_keeps_promises(Recursive{}, 20000);
     expect_same_bits_after_resume(two_components(), Recursive{.pilot = 0.3}, 20000);
+}
+
+// Values of the pilot and of the boxes' samples alike.
+TEST(Recursive, EveryValueThatIsNotFiniteIsCounted) {
+    std::atomic<std::uint64_t> met = 0;
+    const auto f = [&](std::span<const double> x) {
+        const bool bad = x[0] + x[1] < 0.3;
+        met += bad;
+        return bad ? std::nan("") : x[0];
+    };
+    const IntegrationResult r = integrate(f, Domain::unit_cube(2), Recursive{}, {.evaluations = 10000});
+    EXPECT_GT(r.non_finite, 100u);
+    EXPECT_EQ(r.non_finite, met.load());
 }
 
 TEST(Recursive, BudgetsThatAreTooSmallAndMistakes) {

@@ -3,6 +3,7 @@
 #include <numeric>
 
 #include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/vegas/uniform_check.h"
 #include "montelux/mc/integrate/vegas/vegas.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
@@ -77,6 +78,34 @@ TEST(Vegas, ErrorsAreCalibrated) {
         expect_calibrated([](Point x) { return x[0] + x[1] < 0.6 ? std::exp(3 * x[0]) : 0.0; }, 2,
                           (std::exp(1.8) - 1 - 1.8) / 9, form.settings, 12000,
                           std::string(form.name) + " jump");
+    }
+}
+
+// Two hypercubes have half of the cube each; the mean of n values has the variance of a value, with n - 1 in its
+// denominator, over n.
+TEST(Vegas, ErrorsOfHypercubesWithFewPointsAreThoseOfTheirMeans) {
+    for (int boxes : {1, 2}) {
+        const std::uint64_t evaluations = boxes == 1 ? 15 : 16;
+        std::vector<RunningMoments> values(static_cast<std::size_t>(boxes));
+        const Integrand f = [&](double x) {
+            const double y = std::exp(2 * x);
+            values[static_cast<std::size_t>(x * boxes)].add(y);
+            return y;
+        };
+        const Evaluator g(f, Domain::unit_cube(1));
+        const auto estimator = Vegas{.training_iterations = 0, .uniform_share = 0}.estimator({g, 3});
+        ASSERT_EQ(estimator->step({.max_evaluations = evaluations}), StepOutcome::advanced);
+        double mean = 0, variance = 0;
+        std::uint64_t points = 0;
+        for (const RunningMoments& box : values) {
+            mean += box.mean() / boxes;
+            variance += box.variance() / static_cast<double>(box.count()) / (boxes * boxes);
+            points += box.count();
+        }
+        const Tally tally = estimator->tally();
+        EXPECT_EQ(points, tally.evaluations);
+        EXPECT_NEAR(tally.value[0], mean, 1e-12);
+        EXPECT_NEAR(tally.standard_error[0], std::sqrt(variance), 1e-12) << boxes;
     }
 }
 
@@ -230,6 +259,32 @@ TEST(Vegas, LostPeakGivesAWarning) {
         EXPECT_TRUE(good.warnings.empty()) << good;
         const auto bad = integrate(both, Domain::unit_cube(4), reuse, {.evaluations = 100000});
         EXPECT_FALSE(bad.warnings.empty()) << form.name << bad;
+    }
+}
+
+// x has the mean 1/2, which the check's own points find with an error of 0.003.
+TEST(UniformCheck, MeansFarAboveAndFarBelowTheValueGiveAWarning) {
+    const Evaluator g([](double x) { return x; }, Domain::unit_cube(1));
+    MapInsight insight(1);
+    insight.square = insight.uniform_square = {1.0 / 3};
+    insight.size = 0.5;
+    insight.largest_square = 1;
+    UniformCheck check(1);
+    const std::vector<double> scale{1};
+    NonFiniteCount non_finite;
+    ASSERT_TRUE(
+        check.run({g, 7}, nullptr, AdaptiveMap(1, 16), insight, 1e5, 10'000, 5, scale, non_finite, nullptr));
+    const auto warnings = [&](double value) {
+        std::vector<std::string> texts;
+        check.warn({value}, {0.001}, scale, texts);
+        return texts;
+    };
+    const double mean = check.moments().mean(0);
+    EXPECT_TRUE(warnings(mean).empty());
+    for (double value : {mean - 0.1, mean + 0.1}) {
+        const std::vector<std::string> texts = warnings(value);
+        ASSERT_EQ(texts.size(), 1u) << value;
+        EXPECT_NE(texts[0].find("have a mean of"), std::string::npos) << texts[0];
     }
 }
 

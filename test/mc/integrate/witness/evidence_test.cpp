@@ -255,6 +255,38 @@ TEST(Evidence, PolesCountOnce) {
     EXPECT_NEAR(errors.back(), errors.front(), 0.1 * errors.front());
 }
 
+// Poles of sixteen components, each at a place of its own: the limit holds for all their examinations together.
+TEST(Evidence, ExaminationsOfAllComponentsShareTheirLimit) {
+    constexpr int poles = 16;
+    const auto place = [](std::size_t c) { return 0.11 + 0.05 * static_cast<double>(c); };
+    const Integrand f = Integrand::vector_valued(poles, [&](std::span<const double> x, std::span<double> y) {
+        for (std::size_t c = 0; c < poles; ++c) y[c] = 1 / std::sqrt(std::hypot(x[0] - place(c), x[1] - 0.7));
+    });
+    PointBuffer x(poles, 2);
+    for (std::size_t c = 0; c < poles; ++c) {
+        x(c, 0) = place(c) + 1e-6;
+        x(c, 1) = 0.7;
+    }
+    Tally tally;
+    tally.value = tally.absolute = std::vector<double>(poles, 2.0);
+    tally.standard_error.assign(poles, 0.1);
+    tally.evaluations = 60'000;
+    const auto used = [&](std::uint64_t limit) {
+        Evaluator evaluator(f, Domain::unit_cube(2));
+        Evidence evidence(evaluator, 1);
+        ValueBuffer g(poles, poles);
+        NonFiniteCount non_finite;
+        evaluator(x, g, non_finite);
+        evidence.examine(tally, limit);
+        return evidence.evaluations();
+    };
+    EXPECT_GT(used(1'000'000), 4000u);
+    EXPECT_LE(used(4000), 4000u);
+    EXPECT_LE(used(2000), 2000u);
+    EXPECT_GT(used(2000), 0u);
+    EXPECT_EQ(used(10), 0u);
+}
+
 // Notes that say that a component is measured against the integral of |f|.
 std::ptrdiff_t count_of_absolute(const IntegrationResult& r) {
     return std::ranges::count_if(
