@@ -25,7 +25,7 @@ void expect_share(int count, int n, double share, const char* what) {
     EXPECT_NEAR(double(count) / n, share, 5.5 * std::sqrt(share * (1 - share) / n)) << what;
 }
 
-// Two surfaces of alpha 1/2 that decide independently let a quarter of the rays through.
+// Two independent surfaces of alpha 1/2 let a quarter of the rays through.
 void expect_a_quarter_through(Scene scene, std::uint64_t seed, const char* what) {
     World world(std::move(scene));
     Draws draws(seed);

@@ -9,7 +9,7 @@
 namespace montelux::testing {
 namespace {
 
-// Quadrics, meshes and instances that move; the first of both other kinds have random holes.
+// Quadrics and meshes, the first of each with random holes, and moving instances.
 Scene scene_of_all_geometry() {
     Scene scene;
     Draws draws(7);

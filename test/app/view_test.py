@@ -1,5 +1,6 @@
 """montelux view and render --view: pages show and control the render without changing it; attacks have no effect."""
 
+import contextlib
 import re
 import signal
 import socket
@@ -211,23 +212,19 @@ class View(ProgramTest):
     def test_attacks_do_not_delay_the_end(self):
         job, viewer = self.serve("render long.pbrt --time 6 --view -o late.exr")
 
-        begin, ended = time.monotonic(), []
+        begin, lasted = time.monotonic(), []
 
         def attack():
-            try:
+            with contextlib.suppress(OSError, EOFError):  # connections end with the program
                 while job.runs():
                     hostile(viewer, 1000)
-                ended.append("with the program")
-            except (OSError, EOFError) as error:  # connections end with the program
-                ended.append(error)
-            ended.append(time.monotonic() - begin)
+            lasted.append(time.monotonic() - begin)
 
         attacks = threading.Thread(target=attack, daemon=True)
         attacks.start()
         self.assertRegex(self.ends(job), r"\b6\.\d* s")
         attacks.join(60)
-        self.assertEqual(len(ended), 2, "attacks failed")
-        self.assertGreater(ended[1], 3, f"attacks lasted too short: {ended[0]!r}")
+        self.assertGreater(max(lasted, default=0), 3, "the attacks failed or ended early")
 
     def test_attacks_change_no_bit(self):
         self.quietly("render lit.pbrt --spp 1500 -o unseen.exr")

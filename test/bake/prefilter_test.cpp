@@ -251,7 +251,8 @@ TEST(Prefilter, MissedTargetsAreCounted) {
     EXPECT_THROW(prefilter_environment(map, 0, {0.5}, settings), Error);
 }
 
-// Half of the map is a thousandth as bright as the other: what faces it meets the target by its own brightness.
+// Half of the map is a thousandth as bright as the other. Texels that face it must meet the target relative to their
+// own brightness.
 TEST(Prefilter, DarkTexelsMeetTheirOwnTarget) {
     Image image = random_map(64, 32);
     for (int y = 0; y < image.height(); ++y)

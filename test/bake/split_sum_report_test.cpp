@@ -22,7 +22,7 @@ Image constant_map(const Vec3d& radiance) {
     return image;
 }
 
-// Light that is the same from everywhere leaves nothing to split: both sides are its radiance times F0 * scale + bias.
+// Under constant light both sides equal its radiance times F0 * scale + bias.
 TEST(SplitSumReport, IsExactUnderConstantLight) {
     const EnvironmentMap map(constant_map({3, 3, 3}), EnvironmentLayout::equirectangular);
     constexpr int size = 20;
@@ -48,7 +48,7 @@ TEST(SplitSumReport, IsExactUnderConstantLight) {
     }
 }
 
-// Rows of spheres: integral, split sum, size of their difference, whose errors are those of both.
+// Rows of spheres show the integral, the split sum and their absolute difference, whose error combines both.
 TEST(SplitSumReport, ErrorsOfTheDifferenceAreThoseOfBothSides) {
     const EnvironmentMap map(random_map(32, 16), EnvironmentLayout::equirectangular);
     SplitSumSettings settings;

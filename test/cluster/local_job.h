@@ -47,7 +47,7 @@ class LocalJob {
     std::vector<std::unique_ptr<Rank>> ranks_;
 };
 
-// A mailbox whose rank falls silent: after its n-th message of a kind, or of any, all that it sends is lost.
+// A mailbox that drops the messages of its rank after the n-th one of a kind, or of any kind.
 class FailingMailbox final : public Mailbox {
   public:
     FailingMailbox(Mailbox& mailbox, std::optional<int> last, int n)

@@ -84,7 +84,7 @@ TEST(SharedIntegrand, SilentRanksAreGivenUp) {
     EXPECT_THROW(SharedIntegrand(job.mailbox(0), wavy, 2, 1, 0.1), Error);
 }
 
-// A rank falls silent after its hello: the caller that waits for its batch must not take values that nobody computed.
+// The rank sends its hello and nothing else. A caller that waits for its batch must get an error, not values.
 TEST(SharedIntegrand, OpenBatchesOfSilentRanksFail) {
     LocalJob job(2);
     FailingMailbox failing(job.mailbox(1), std::nullopt, 1);

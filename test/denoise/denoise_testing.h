@@ -95,7 +95,7 @@ struct StandIn {
     bool affinity = true;
     bool bad_input = false;        // a number that is not finite, or a colour below 0, reached the filter
     std::vector<std::string> runs; // the images and switches of each execution
-    // Inputs of the first execution that has them, by name.
+    // Inputs by name, from the first execution that has them.
     std::map<std::string, std::vector<float>> inputs;
     std::string error;
 };

@@ -102,7 +102,7 @@ Coarse boundary_fan(Index neighbours, Vec3f at) {
     return c;
 }
 
-// Weights of a tangent's mask have the sum 0.
+// The weights of a tangent mask sum to 0.
 TEST(LoopSubdivision, NormalsOnABoundaryDoNotDependOnThePlace) {
     for (Index neighbours = 2; neighbours <= 7; ++neighbours) {
         const Coarse here = boundary_fan(neighbours, {0, 0, 0}),

@@ -266,7 +266,7 @@ TEST_F(Studio, EnvironmentsReplaceInfiniteLights) {
     EXPECT_EQ(d.scene.shapes.size(), 2u);
 }
 
-// An orbit says where the camera stands and where it looks.
+// An orbit sets only the position and direction of the camera.
 TEST_F(Studio, OrbitsKeepTheMediumAndTheShutterOfTheCamera) {
     SceneDescription d = parse_pbrt(R"(MakeNamedMedium "smoke" "string type" "homogeneous"
 MakeNamedMedium "fog" "string type" "homogeneous" MediumInterface "" "fog"

@@ -120,14 +120,14 @@ TEST(Metrics, SkewnessOfADifferenceIsThatOfBothPictures) {
     fill(b, {2, 4, 1});
     EXPECT_DOUBLE_EQ(scores().z.mean, 1);
     EXPECT_DOUBLE_EQ(scores().skew_corrected.mean, 1 + (13.5 - 64) / 125 / 2);
-    // In turns, the difference and its skewness change their signs.
+    // Swapped pictures change the signs of the difference and its skewness.
     std::swap(a, b);
     EXPECT_DOUBLE_EQ(scores().skew_corrected.mean, -1 - (13.5 - 64) / 125 / 2);
-    // What is equally skewed in both cancels.
+    // Equal skewness cancels.
     fill(a, {7, 3, 2});
     fill(b, {4, 3, 2});
     EXPECT_DOUBLE_EQ(scores().skew_corrected.mean, scores().z.mean);
-    // The skewness of one alone.
+    // Only one picture has a skewness.
     b = grey({4});
     EXPECT_DOUBLE_EQ(scores().skew_corrected.mean, 1 + 2 / 2.0);
 }

@@ -106,7 +106,7 @@ TEST(HdrFile, OldAndNewCodingAndOddHeaders) {
     // 300 = 1 + 43 + 1 * 256 equal pixels: two counts, the second with the weight 256.
     Image many = read(head + "-Y 1 +X 300\n" + raw("\x80\x40\x20\x81\x01\x01\x01\x2b\x01\x01\x01\x01"));
     EXPECT_EQ(many.value(299, 0, 0), 1);
-    // Each pixel begins a count of its own: 3 of the one, 257 of the other, 2 of the first.
+    // Repetition counts start anew at each pixel: 3, 257 and 2.
     Image several = read(head + "-Y 1 +X 262\n" +
                          raw("\x80\x40\x20\x81\x01\x01\x01\x02\x80\x40\x20\x82\x01\x01\x01\x00"
                              "\x01\x01\x01\x01\x80\x40\x20\x81\x01\x01\x01\x01"));

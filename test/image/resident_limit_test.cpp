@@ -22,7 +22,7 @@
 
 namespace {
 
-// A mapping whose giving back takes long, so that a test can do something meanwhile.
+// A mapping whose madvise() is delayed, so that a test can act meanwhile.
 std::atomic<const void*> slow_mapping{nullptr};
 std::atomic<bool> is_giving_back{false}, is_removed{false}, was_removed_meanwhile{false};
 
@@ -152,7 +152,7 @@ TEST(ResidentLimit, TheLimitHoldsWhenOtherFilesGo) {
     EXPECT_LE(file->resident(), limit);
 }
 
-// A mapping may be unmapped once it is removed: nothing is done with it any more.
+// A removed mapping may be unmapped at once, so remove() must wait for calls in progress.
 TEST(ResidentLimit, RemovingWaitsForPagesThatAreGivenBack) {
     const TemporaryFolder folder;
     const std::string path = folder.write("map", std::string(mib, 'x'));

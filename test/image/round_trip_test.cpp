@@ -105,7 +105,7 @@ TEST(ExrFile, KeepsAttributes) {
     EXPECT_TRUE(same_bits(back.f32(), image.f32()));
 }
 
-// A flag of the file says that names may have 255 characters, not only 31. It says nothing about tiles.
+// The flag of long names raises the limit from 31 to 255 characters; the flag of tiles does not.
 TEST(ExrFile, NamesAreAsLongAsTheFileSaysTheyMayBe) {
     TemporaryFolder folder;
     const std::string name(255, 'x');

@@ -74,7 +74,7 @@ TEST(Background, IsNotExposed) {
     EXPECT_LE(channel_mean(film, 8, 8, 1), 0.126);
 }
 
-// A sample whose weight is negative takes away from both, so that edges keep their brightness.
+// Negative filter weights apply to the background, too, so that edges keep their brightness.
 TEST(Background, IsWeighedAsLightByFiltersWithNegativeLobes) {
     SceneDescription d = square_below().description;
     d.integrator.background = blue;
@@ -87,7 +87,7 @@ TEST(Background, IsWeighedAsLightByFiltersWithNegativeLobes) {
     for (const PixelFilter& filter : {PixelFilter(MitchellFilter{}), PixelFilter(LanczosFilter{})})
         for (const float weight : {1.25f, -1.25f})
             for (int c = 0; c < 3; ++c) EXPECT_EQ(background(filter, weight)[c], 0.5f * weight * blue[c]);
-    // Other weights are 1 but for rounding, whose noise a constant need not get.
+    // Weights of other filters are 1 up to rounding, which is not applied to a constant background.
     for (const PixelFilter& filter :
          {PixelFilter(BoxFilter{}), PixelFilter(TriangleFilter{}), PixelFilter(GaussianFilter{})})
         for (int c = 0; c < 3; ++c) EXPECT_EQ(background(filter, 1.0625f)[c], 0.5f * blue[c]);

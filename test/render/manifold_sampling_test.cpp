@@ -347,13 +347,21 @@ TEST(ManifoldSampling, InterruptedRendersEndWithTheSameBits) {
     EXPECT_THROW(load_checkpoint(folder / "sampled.state", d, {}), Error);
 }
 
+SceneBuilder lamp_without_casters() {
+    SceneBuilder b = lit_corner();
+    add_box_lamp(b);
+    return b;
+}
+SceneBuilder mirror_without_lamps() {
+    SceneBuilder b = lit_corner();
+    b.add_uniform_light(1);
+    add_ball(b, perfect_mirror());
+    return b;
+}
+
 // Without a pair of a caster and a light the bits are those of path tracing.
 TEST(ManifoldSampling, ChangesNothingWithoutCasters) {
-    SceneBuilder lamp = lit_corner();
-    add_box_lamp(lamp);
-    SceneBuilder sky = lit_corner();
-    sky.add_uniform_light(1);
-    add_ball(sky, perfect_mirror());
+    const SceneBuilder lamp = lamp_without_casters(), sky = mirror_without_lamps();
     for (const SceneBuilder* b : {&lamp, &sky}) {
         const Film plain = render(b->description), other = render(sampled(*b));
         for (std::size_t i = 0; i < plain.pixels().size(); ++i)
@@ -361,15 +369,10 @@ TEST(ManifoldSampling, ChangesNothingWithoutCasters) {
     }
 }
 
-// Either may be missing of a pair: then a sentence says which.
+// The warning names what is missing: a caster or a light.
 TEST(ManifoldSampling, WithoutEffectAWarningSaysWhy) {
-    SceneBuilder lamp = lit_corner();
-    add_box_lamp(lamp);
-    SceneBuilder sky = lit_corner();
-    sky.add_uniform_light(1);
-    add_ball(sky, perfect_mirror());
-    SceneBuilder both = lit_corner();
-    add_box_lamp(both);
+    const SceneBuilder lamp = lamp_without_casters(), sky = mirror_without_lamps();
+    SceneBuilder both = lamp_without_casters();
     add_ball(both, perfect_mirror());
     const auto warning = [](const SceneDescription& d) { return manifold_warning(Renderer(d)); };
     EXPECT_NE(warning(sampled(lamp)).find("no effect: no shape"), std::string::npos);

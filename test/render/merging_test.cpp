@@ -319,7 +319,7 @@ TEST(MergingPictures, ResumedRendersHaveTheSameBits) {
     }
 }
 
-// Light paths are as independent of those of other seeds as camera paths are.
+// Light paths depend on the seed and the pixel as camera paths do.
 TEST(MergingPictures, SeedsAndPixelsHaveOtherLightPaths) {
     SceneBuilder b = beam_in_mirrors(25);
     b.description.integrator.method = IntegratorKind::bidirectional;

@@ -176,7 +176,7 @@ TEST(MetropolisRender, FeaturesAreThoseOfPathTracing) {
     EXPECT_LT(depth, 0.02 * mean_depth);
 }
 
-// The share that the user gives is taken as it is, also beyond the limits of the automatic one.
+// A given probability is used unchanged, even outside the automatic range.
 TEST(MetropolisRender, LargeStepsAreAsFrequentAsAskedFor) {
     SceneDescription d = metropolis(mixed_scene(1, 8, 8).description, 64);
     for (const float share : {0.02f, 0.8f}) {
@@ -194,8 +194,8 @@ TEST(MetropolisRender, LargeStepsAreAsFrequentAsAskedFor) {
     EXPECT_LT(automatic, 0.51);
 }
 
-// Chains of few states, each of which counts: a furnace of known brightness. A limit that no sample reaches has chains
-// follow all light.
+// A furnace of known brightness, by chains of few states. The clamp, which no sample reaches, makes chains carry all
+// light.
 TEST(MetropolisRender, ShortChainsLoseNoLight) {
     SceneBuilder b;
     b.description.film.width = b.description.film.height = 1;

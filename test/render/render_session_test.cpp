@@ -128,7 +128,7 @@ TEST(FinishedTiles, AreReportedAfterAResumeInTheMiddleOfARound) {
     for (const auto& [round, count] : calls) EXPECT_EQ(count, 6) << round;
 }
 
-// Samples that were not taken when a tile was stopped are taken with that tile alone.
+// Samples that a stopped tile left out belong to that tile only.
 TEST(Tiles, StoppedOnesKeepNoSamplesForTheNext) {
     const auto d = described(SamplerKind::independent, 4);
     const Renderer renderer(*d);

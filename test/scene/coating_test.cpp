@@ -78,7 +78,7 @@ TEST(CoatingTable, WhiteFurnace) {
     }
 }
 
-// Fresnel's formulae want the complex index of a metal relative to the coat that light comes from.
+// Fresnel's equations need the complex index of the metal relative to that of the coat.
 TEST(CoatedConductor, IndexOfTheMetalIsRelativeToTheCoat) {
     CoatedConductorMaterial material;
     material.metal.eta = {0.75f};

@@ -134,7 +134,7 @@ TEST(CurveSegments, BentCurvesAreHitWhereTheyAre) {
     EXPECT_GT(misses, 300);
 }
 
-// Uneven scales tilt normals against their surfaces' directions: the ribbon and its normals stay perpendicular.
+// Under non-uniform scaling the normals of a ribbon stay perpendicular to it.
 TEST(Strands, NormalsOfRibbonsStayPerpendicular) {
     const Point3f points[] = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}};
     const Normal3f normals[] = {{0, 1, 1}, {0, -0.5f, 2}};

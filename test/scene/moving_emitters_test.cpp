@@ -127,7 +127,7 @@ TEST(MovingEmitters, BoundsAreTight) {
     EXPECT_NEAR(cone(Transform::rotate(179, {1, 0, 0})).cos_theta_o, std::cos(89.5 * pi / 180), 1e-3);
 }
 
-// Vertex normals decide which side shines, at any time those of that time.
+// The vertex normals at the time of the ray decide which side emits.
 TEST(MovingEmitters, NormalsThatTurnOverTurnTheLight) {
     TriangleMesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {0, 1, 2}};
     mesh.normals.assign(3, {0, 0, -1});

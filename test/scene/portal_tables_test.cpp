@@ -88,7 +88,7 @@ TEST(Portals, PowerIsTheFluxThroughThem) {
                 pi * 6 / (4 * pi * cross_section), 1e-5);
 }
 
-// Sums over the map to their last bit: checkpoints and ranks rely on it.
+// Sums have the same bits for any number of threads, as checkpoints and ranks require.
 TEST(Portals, TablesDoNotDependOnThreads) {
     Image map(32, 32, {"R", "G", "B"});
     TestUniforms uniforms(6);

@@ -107,7 +107,7 @@ TEST(Equiangular, SingleScatteringOfABeam) {
         "spot light", 5e-4);
 }
 
-// A black screen between lamp and ray that comes or goes meanwhile.
+// A black screen that moves between lamp and ray, or away.
 TEST(Equiangular, ShadowsAreThoseOfTheTimeOfTheRay) {
     const auto radiance = [](const Transform& start, const Transform& end, float time) {
         VolumeScene b = lamp_in_fog(true);

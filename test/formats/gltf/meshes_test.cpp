@@ -83,7 +83,7 @@ TEST(GltfMeshes, SparseAccessors) {
     }
 }
 
-// The stride is that of the base view alone: sparse values lie packed.
+// The byte stride applies to the base view only; sparse values are tightly packed.
 TEST(GltfMeshes, SparseAccessorsOfInterleavedViews) {
     Model m;
     m.add<float>({0, 0, 0, 7, 1, 0, 0, 7, 0, 1, 0, 7}, "VEC4");

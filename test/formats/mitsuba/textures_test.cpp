@@ -86,7 +86,7 @@ TEST(MitsubaBitmap, EqualFilesAreReadOnce) {
     EXPECT_EQ(looks.files.files_read().size(), 1u);
 }
 
-// One name in two folders is two pictures; other spellings of a path are one.
+// Files of one name in two folders are different pictures; two spellings of a path are the same one.
 TEST(MitsubaBitmap, FoldersTellFilesApart) {
     const auto texture = [](const std::string& file) {
         return R"(<bsdf type="diffuse"><texture type="bitmap" name="reflectance">

@@ -1,4 +1,4 @@
-// Memory of a device and the turns of threads at it, on a device made here that has little memory and no compiler.
+// Device arrays and the serialisation of threads, on a fake device with little memory and no compiler.
 #include <algorithm>
 #include <chrono>
 #include <condition_variable>
@@ -23,7 +23,7 @@ class SmallDevice final : public Device {
     static constexpr std::size_t room = 100; // bytes of an array
     int held = 0;                            // arrays that are allocated
 
-    // The most runs at a time.
+    // Largest number of simultaneous runs.
     int most_at_once() const { return most_; }
 
     std::string description() const override { return "a small device"; }
@@ -58,7 +58,7 @@ class SmallDevice final : public Device {
         SmallDevice& device_;
     };
 
-    // Gives other threads the time to come here too, where nothing holds them off.
+    // Waits long enough for other threads to enter, if nothing serialises them.
     void wait_for_others() {
         std::unique_lock lock(mutex_);
         most_ = std::max(most_, ++running_);

@@ -116,7 +116,7 @@ TEST(WindowedPiecewise2D, DarkWindowsBesideGlareAreExact) {
     }
 }
 
-// A cell that is not zero is drawn in its window, however faint it is beside the whole; a zero is not.
+// Cells of any positive value are drawn in their window; zero cells are not.
 TEST(WindowedPiecewise2D, TheFaintestCellsBesideGlareAreDrawn) {
     const std::vector<double> values{0, 1e-300, 1e-30, 1};
     const WindowedPiecewise2D d(values, 4, 1);

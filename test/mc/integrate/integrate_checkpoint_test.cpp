@@ -190,7 +190,7 @@ TEST(IntegrateCheckpoint, UnwritableFileIsAnErrorBeforeTheRun) {
     EXPECT_EQ(calls, 0);
 }
 
-// Reads all that the state below holds.
+// Reads the state that is written below.
 std::vector<double> read_all(StateReader& state) {
     EXPECT_EQ(state.get_word(), 7u);
     EXPECT_EQ(state.get_text(), "twelve bytes");

@@ -1,4 +1,4 @@
-// Bytes of files and of saved values: they come back, and where some are missing there is an error.
+// Bytes of files and of serialised values: round trips, and errors where bytes are missing.
 #include "test/temporary_folder.h"
 #include <cstdint>
 #include <filesystem>
@@ -73,7 +73,7 @@ TEST(ByteReader, GivesWhatWasWritten) {
     EXPECT_TRUE(in.at_end());
 }
 
-// However few bytes a value lacks, it is refused, and nothing is written where it should go.
+// An incomplete value is an error and leaves its destination unchanged.
 TEST(ByteReader, AValueThatIsNotWholeIsAnError) {
     std::vector<std::uint8_t> bytes(24);
     std::iota(bytes.begin(), bytes.end(), std::uint8_t{1});

@@ -99,7 +99,7 @@ TEST(Special, EndsAndArgumentsOutsideTheDomain) {
     for (std::size_t i = 0; i < std::size(outside); ++i) EXPECT_TRUE(std::isnan(outside[i])) << i;
 }
 
-// The density of one parameter 1 is a power: a x^(a-1), or b (1 - x)^(b-1).
+// With one parameter equal to 1 the density is a power: a x^(a-1), or b (1 - x)^(b-1).
 TEST(Special, BetaDensityAtItsEnds) {
     constexpr double infinity = std::numeric_limits<double>::infinity();
     for (const double c : {1.0, 1.5, 3.0, 7.0}) {

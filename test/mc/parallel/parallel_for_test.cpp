@@ -84,7 +84,7 @@ TEST(ParallelReduceOrdered, BitIdenticalForAnyNumberOfThreads) {
     EXPECT_NE(backwards, first);
 }
 
-// One thread comes to the first of the last run's two values when all but one are done.
+// On one thread, a request at the last value but one leaves one value out.
 TEST(ParallelReduceOrdered, CancelledInItsLastRunGivesNoResult) {
     constexpr std::int64_t count = 2048;
     const ThreadLimit one(1);

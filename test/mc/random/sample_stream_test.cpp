@@ -253,7 +253,7 @@ TEST(SampleStream, BlueNoisePixelsOfABlockShareANet) {
     }
 }
 
-// Pixels at one place of different tiles.
+// Pixels at the same place of different tiles.
 TEST(SampleStream, BlueNoiseTilesDoNotRepeatNumbers) {
     constexpr std::uint32_t width = 4096;
     std::set<std::vector<double>> different;

@@ -160,7 +160,7 @@ TEST(KolmogorovSmirnov, RejectsAShift) {
         EXPECT_FALSE(kolmogorov_smirnov_test(x, [=](double v) { return std::clamp(v - shift, 0.0, 1.0); })
                          .passes(significance))
             << shift;
-    // The largest distance of the law from the steps of the values, to either side.
+    // Largest distance between the distribution function and the empirical steps, on either side.
     const std::vector<double> early{0.125, 0.25}, late{0.75, 0.875}, apart{0.375, 0.625};
     const auto distance = [](const std::vector<double>& values) {
         return kolmogorov_smirnov_test(values, [](double v) { return v; }).statistic;

@@ -79,7 +79,7 @@ TEST(ParetoTail, ShapeOfTheLargestWeights) {
     EXPECT_LT(bounded.fit(10'000).value().shape, -0.5);
 }
 
-// 3 sqrt(n) of n values, at most a fifth of them, are the tail: a law that was asked for before does not count.
+// The tail has 3 sqrt(n) of n values, at most a fifth; a fit for another n is not reused.
 TEST(ParetoTail, TailIsThatOfTheNumberOfValuesAskedFor) {
     ParetoTail tail;
     tail.add(pareto_sample(10'000, 0.4, 13));
@@ -88,7 +88,7 @@ TEST(ParetoTail, TailIsThatOfTheNumberOfValuesAskedFor) {
     EXPECT_EQ(tail.fit(100).value().points, 20);
     EXPECT_FALSE(tail.fit(10));
     EXPECT_EQ(tail.fit(10'000).value().points, 300);
-    // It is asked for again after more values.
+    // More values need a new fit.
     const double threshold = tail.fit(10'000).value().threshold;
     tail.add(1e6);
     EXPECT_GT(tail.fit(10'000).value().threshold, threshold);

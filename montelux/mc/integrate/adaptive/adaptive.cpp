@@ -425,6 +425,7 @@ class AdaptiveEstimator final : public Estimator {
             phase_ = Phase::uniform;
             return;
         }
+        // Training again takes more than one round.
         if (!request.targeted() || weighted_.points() < 4 * first_sample() || retrained_ >= max_retrainings ||
             !trainer_.has_time_for(2 * round_points_, request))
             return;

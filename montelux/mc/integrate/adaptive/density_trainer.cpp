@@ -48,7 +48,7 @@ bool is_heavy_tailed(std::span<const double> weights) {
     return fit && fit->shape > heavy_shape;
 }
 
-// q at each point, block by block. False where `stop` said so.
+// Evaluates q at each point, in blocks. Returns false when stopped.
 bool pdf_until(const MixtureDensity& density, const PointBatch& x, std::span<double> q,
                const std::function<bool()>& stop) {
     for (std::size_t first = 0; first < x.count(); first += pdf_block) {

@@ -41,7 +41,8 @@ class DensityTrainer {
     // One round of n points, about (a multiple of what the density divides exactly). False when cancelled:
     // nothing changed.
     bool round(std::uint64_t n, const StepRequest& request);
-    // Would a round of n points end before the deadline, if its points took as long as those of the last?
+    // Whether a round of n points ends before the deadline, at the last round's time per point. True without one: the
+    // time is not saved, since another machine may resume.
     bool has_time_for(std::uint64_t n, const StepRequest& request) const;
     // Walks under |g| from points of the last round, and returns the share of the integral that lies where n
     // points of the density are expected to hit too rarely for their spread to tell. The next fit sees the
@@ -98,9 +99,9 @@ class DensityTrainer {
     // ridges, of which they could not reach the ends.
     Walk walk(const WalkedPoints& before, const Round& last, std::uint64_t max_evaluations,
               std::size_t longest, double exponent, bool traces = false) const;
-    // False where `stop` said so; what it had changed by then, round() undoes.
+    // Returns false when stopped; round() then restores the state.
     bool fit(const std::function<bool()>& stop);
-    // Empty where `stop` said so.
+    // Empty when stopped.
     std::optional<Pool> pool(const std::function<bool()>& stop) const;
     void remember(const Pool& all, std::span<const double> ratios);
 

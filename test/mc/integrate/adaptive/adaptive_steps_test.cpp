@@ -103,7 +103,7 @@ TEST(Adaptive, EveryPhaseResumesWithTheSameBitsAndCanBeInterrupted) {
     EXPECT_EQ(check_every_step(ridge, {200'000, 1e-3}), (std::set<std::uint64_t>{0, 1, 2, 3}));
 }
 
-// Walkers find a part of the ridge that the first density misses: it is given up, but its samples count.
+// Walkers find a part of the ridge that the first density misses. It is abandoned, but its evaluations count.
 TEST(Adaptive, EvaluationsOfDensitiesThatWereGivenUpCount) {
     const KnownIntegral problem{rosenbrock_ridge, Domain(std::vector<Range>(4, {-5, 5})), {0}};
     std::atomic<std::uint64_t> made = 0;

@@ -211,7 +211,7 @@ TEST(DensityTrainer, RoundsThatRunOutOfTimeChangeNothing) {
     const std::vector<std::uint64_t> before = words_of(trainer);
     EXPECT_FALSE(trainer.round(4096, {.deadline = Clock::now()}));
     EXPECT_EQ(words_of(trainer), before);
-    // Ends within every part of a round.
+    // Deadlines throughout a round.
     const Clock::time_point begin = Clock::now();
     constexpr int parts = 24;
     auto loaded = [&] {

@@ -237,7 +237,7 @@ TEST(SampleChains, DrawsThatRunToInfinityAreWarnedOf) {
     }
 }
 
-// Walkers that cannot move, since the density is zero at all other points: proposals tell the random numbers.
+// Walkers cannot move, since the density is zero elsewhere; their proposals show the random numbers.
 TEST(WalkerEnsemble, EveryStepHasRandomNumbersOfItsOwn) {
     std::vector<double> asked;
     const Integrand integers([&](double x) {
@@ -258,7 +258,7 @@ TEST(WalkerEnsemble, EveryStepHasRandomNumbersOfItsOwn) {
     EXPECT_EQ(std::ranges::adjacent_find(proposals), proposals.end());
 }
 
-// Refused for its size, or else for a wrong number of starts: nothing runs.
+// The error is about memory, or else about a wrong number of starts, so that nothing runs.
 TEST(SampleChains, DrawsThatDoNotFitIntoMemoryAreRefused) {
     auto refusal = [](double draws) {
         ChainOptions options{.draws = static_cast<std::uint64_t>(draws)};

@@ -359,7 +359,7 @@ std::vector<std::uint64_t> saved_numbers(const CubatureRegions& regions) {
     return {state.words().begin(), state.words().end()};
 }
 
-// What is saved of a region is all of it.
+// save() covers all numbers of a region.
 TEST(CubatureRegions, ACopyHasAllNumbersOfTheRegion) {
     for (int dimensions : {1, 2}) {
         CubatureRegions one(dimensions, 2);

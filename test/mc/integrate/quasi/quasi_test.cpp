@@ -156,7 +156,7 @@ TEST(Quasi, WarnsOfWhatOneReplicateSaw) {
     EXPECT_FALSE(nothing.converged());
 }
 
-// Values of one sign have the mean of their magnitudes, whether sets grow or are replaced.
+// For values of one sign the mean equals the mean magnitude, whether sets grow or are replaced.
 TEST(Quasi, MagnitudesAreThoseOfThePointsThatCount) {
     const KnownIntegral f = product(2);
     const Evaluator evaluator(f.f, f.domain);

@@ -97,7 +97,7 @@ TEST(Recursive, KeepsPromises) {
     expect_same_bits_after_resume(two_components(), Recursive{.pilot = 0.3}, 20000);
 }
 
-// Values of the pilot and of the boxes' samples alike.
+// The count includes the pilot and the samples of the boxes.
 TEST(Recursive, EveryValueThatIsNotFiniteIsCounted) {
     std::atomic<std::uint64_t> met = 0;
     const auto f = [&](std::span<const double> x) {

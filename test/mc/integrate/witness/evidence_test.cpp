@@ -255,7 +255,7 @@ TEST(Evidence, PolesCountOnce) {
     EXPECT_NEAR(errors.back(), errors.front(), 0.1 * errors.front());
 }
 
-// Poles of sixteen components, each at a place of its own: the limit holds for all their examinations together.
+// Sixteen components, each with its own pole, share one limit of evaluations.
 TEST(Evidence, ExaminationsOfAllComponentsShareTheirLimit) {
     constexpr int poles = 16;
     const auto place = [](std::size_t c) { return 0.11 + 0.05 * static_cast<double>(c); };
