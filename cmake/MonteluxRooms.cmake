@@ -1,13 +1,17 @@
 # One CMake target per room, and the libraries made of rooms.
 
-# montelux_room(path/of/room [COLD] [USES rooms...] [LINKS libraries...] [INCLUDES directories...])
+# montelux_room(path/of/room [COLD] [SPLIT regex] [USES rooms...] [LINKS libraries...] [INCLUDES directories...])
 # Compiles montelux/<room>/**.cpp; its unit tests are test/<room>/**_test.cpp. COLD: no code of the sampling loop.
+# SPLIT: files that match are never in one object with those that do not (montelux_split_room).
 function(montelux_room room)
-    cmake_parse_arguments(ARG "COLD" "" "USES;LINKS;INCLUDES" ${ARGN})
+    cmake_parse_arguments(ARG "COLD" "SPLIT" "USES;LINKS;INCLUDES" ${ARGN})
     string(REPLACE "/" "_" name "montelux_room_${room}")
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/montelux/${room}/*.cpp)
     if(sources)
         add_library(${name} OBJECT ${sources})
+        if(ARG_SPLIT)
+            montelux_split_room(${name} "${ARG_SPLIT}")
+        endif()
         set(scope PUBLIC)
         target_include_directories(${name} SYSTEM PRIVATE ${ARG_INCLUDES})
         target_link_libraries(${name} PRIVATE montelux_flags)
@@ -32,6 +36,29 @@ function(montelux_room room)
     set_property(GLOBAL APPEND PROPERTY MONTELUX_ROOMS ${room})
     set_property(GLOBAL PROPERTY MONTELUX_ROOM_SOURCES_${name} "${sources}")
     set_property(GLOBAL PROPERTY MONTELUX_ROOM_LINKS_${name} "${ARG_LINKS}")
+endfunction()
+
+# montelux_split_room(target regex): also in unity builds, files that match are in other objects than those that do not.
+# A change of a BSDF then concerns one half, and a program can have other objects for one half (MonteluxSanitized.cmake).
+function(montelux_split_room target regex)
+    get_target_property(sources ${target} SOURCES)
+    set(matching ${sources})
+    set(other ${sources})
+    list(FILTER matching INCLUDE REGEX "${regex}")
+    list(FILTER other EXCLUDE REGEX "${regex}")
+    set_property(GLOBAL PROPERTY MONTELUX_ROOM_SPLIT_${target} "${matching}")
+    if(CMAKE_UNITY_BUILD)
+        get_target_property(batch_size ${target} UNITY_BUILD_BATCH_SIZE)
+        foreach(half matching other)
+            set(count 0)
+            foreach(file ${${half}})
+                math(EXPR batch "${count} / ${batch_size}")
+                math(EXPR count "${count} + 1")
+                set_source_files_properties(${file} PROPERTIES UNITY_GROUP ${half}_${batch})
+            endforeach()
+        endforeach()
+        set_target_properties(${target} PROPERTIES UNITY_BUILD_MODE GROUP)
+    endif()
 endfunction()
 
 # montelux_library(name ROOMS rooms... [USES libraries...]): the target montelux::name.

@@ -1,10 +1,14 @@
 # Sanitized twins: rooms where memory can go wrong, compiled once more with the sanitizers, beside the plain code of all
 # other rooms. The build with MONTELUX_SANITIZE has the whole house under them.
 
-# montelux_sanitized_room(path/of/room): the objects montelux_room_NAME_sanitized.
+# montelux_sanitized_room(path/of/room): the objects montelux_room_NAME_sanitized; of a room with SPLIT, the
+# matching files alone.
 function(montelux_sanitized_room room)
     string(REPLACE "/" "_" name "montelux_room_${room}")
-    get_target_property(sources ${name} SOURCES)
+    get_property(sources GLOBAL PROPERTY MONTELUX_ROOM_SPLIT_${name})
+    if(NOT sources)
+        get_target_property(sources ${name} SOURCES)
+    endif()
     get_target_property(links ${name} LINK_LIBRARIES)
     add_library(${name}_sanitized OBJECT ${sources})
     target_include_directories(${name}_sanitized SYSTEM PRIVATE $<TARGET_PROPERTY:${name},INCLUDE_DIRECTORIES>)

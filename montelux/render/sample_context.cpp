@@ -9,6 +9,7 @@
 #include "montelux/mc/random/hash.h"
 #include "montelux/mc/random/uniform_bits.h"
 #include "montelux/mc/random/weyl.h"
+#include "montelux/transport/found_path.h"
 #include "montelux/transport/visible_pixel.h"
 
 namespace montelux {

@@ -7,6 +7,7 @@
 #include <type_traits>
 
 #include "montelux/mc/math/overloaded.h"
+#include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/setting_names.h"
 
 namespace montelux {

@@ -5,6 +5,9 @@
 
 namespace montelux {
 
+BidirectionalMemory::BidirectionalMemory() = default;
+BidirectionalMemory::~BidirectionalMemory() = default;
+
 BidirectionalIntegrator::BidirectionalIntegrator(const IntegratorSettings& settings, const Camera& camera,
                                                  float footprint_scale, const PixelBounds& crop,
                                                  Vec2f filter_radius, bool volumes)

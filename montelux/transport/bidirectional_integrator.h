@@ -3,41 +3,30 @@
 
 #include <span>
 #include <string_view>
+#include <vector>
 
 #include "montelux/scene/film/film_settings.h"
 #include "montelux/scene/render_settings.h"
+#include "montelux/transport/edge_density.h"
 #include "montelux/transport/integrator_model.h"
-#include "montelux/transport/light_end.h"
 #include "montelux/transport/light_map.h"
 #include "montelux/transport/merging_sample.h"
 #include "montelux/transport/splat.h"
 #include "montelux/transport/strategy_weight.h"
-#include "montelux/transport/subpath.h"
 #include "montelux/transport/texture_footprint.h"
 
 namespace montelux {
 
-// A path that a strategy found, for tests and pictures of strategies: its first s vertices are of the light's side, the other t of the camera's.
-// Of a merged path (s + t vertices, merged at v_s) the light's vertices are those of a LightMap.
-struct FoundPath {
-    std::size_t s = 0, t = 0;
-    const LightEnd& end;                   // v_0
-    std::span<const SubpathVertex> light;  // v_1 to v_{s-1}
-    std::span<const SubpathVertex> camera; // v_{n-2} and so on, to v_s (v_1 for s = 0)
-    Point3f lens;                          // v_{n-1}
-    const PathDensities& densities;
-    double weight = 0;
-    SampledSpectrum value;                  // unweighted
-    const LightMapVertex* merged = nullptr; // at v_s, if that is merged
-    const Point2f* film = nullptr;          // of a splat: where it lies, in pixels
-};
-struct PathObserver {
-    void (*found)(void* self, const FoundPath& path);
-    void* self;
-};
+struct SubpathVertex;
+struct PathObserver;
 
 // The memory of a sample; allocated once and used again.
 struct BidirectionalMemory {
+    BidirectionalMemory();
+    ~BidirectionalMemory();
+    BidirectionalMemory(const BidirectionalMemory&) = delete;
+    BidirectionalMemory& operator=(const BidirectionalMemory&) = delete;
+
     std::vector<SubpathVertex> camera, light; // z_1, z_2 ... and y_1, y_2 ...
     std::vector<EdgeDensity> edges;           // of the path in question, with media
     PathDensities densities;

@@ -6,6 +6,7 @@
 
 #include "montelux/scene/light/shadow_ray.h"
 #include "montelux/transport/bidirectional_integrator.h"
+#include "montelux/transport/found_path.h"
 #include "montelux/transport/light_choice.h"
 #include "montelux/transport/shadow_transmittance.h"
 

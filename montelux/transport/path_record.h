@@ -2,14 +2,17 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <vector>
 
+#include "montelux/scene/bsdf/bsdf_types.h"
 #include "montelux/scene/light/light_sampling.h"
-#include "montelux/scene/material/make_bsdf.h"
 #include "montelux/scene/shape/surface_point.h"
 
 namespace montelux {
+
+struct SurfaceBsdf;
 
 // Light that the path hit: on a surface, or outside the scene.
 struct FoundLight {
@@ -97,8 +100,8 @@ struct PathVertex {
     Hit hit;
     std::optional<SurfacePoint> surface; // empty if the ray left the scene or ended in a medium
     std::vector<FoundLight> found;
-    std::optional<SurfaceBsdf> bsdf; // this and the following are empty if the path ended before
-    Vec3f wo;                        // towards the previous vertex, in the frame of the shading normal
+    std::shared_ptr<const SurfaceBsdf> bsdf; // this and the following are empty if the path ended before
+    Vec3f wo; // towards the previous vertex, in the frame of the shading normal
     std::optional<DirectLight> direct;
     std::optional<Scattering> scattering;
     std::optional<Roulette> roulette;

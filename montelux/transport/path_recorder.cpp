@@ -1,5 +1,9 @@
 #include "montelux/transport/path_recorder.h"
 
+#include <memory>
+
+#include "montelux/scene/material/make_bsdf.h"
+
 namespace montelux {
 
 void PathRecorder::begin() const { *record_ = {}; }
@@ -35,7 +39,7 @@ void PathRecorder::found_light(FoundLight light) const {
 }
 
 void PathRecorder::made_bsdf(const SurfaceBsdf& bsdf, Vec3f wo) const {
-    last().bsdf = bsdf;
+    last().bsdf = std::make_shared<const SurfaceBsdf>(bsdf);
     last().wo = wo;
 }
 

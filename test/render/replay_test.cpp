@@ -4,9 +4,13 @@
 #include "test/sanitized.h"
 #include <gtest/gtest.h>
 #include <limits>
+#include <map>
+#include <memory>
+#include <utility>
 
 #include "montelux/mc/math/error.h"
 #include "montelux/render/sample_record.h"
+#include "montelux/scene/material/make_bsdf.h"
 
 namespace montelux::testing {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "montelux/mc/random/sample_stream.h"
 #include "montelux/scene/light/light_sampling.h"
-#include "montelux/transport/bidirectional_integrator.h"
+#include "montelux/transport/found_path.h"
 #include "montelux/transport/light_end.h"
 
 namespace montelux::testing {
