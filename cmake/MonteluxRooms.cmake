@@ -1,17 +1,13 @@
 # One CMake target per room, and the libraries made of rooms.
 
-# montelux_room(path/of/room [COLD] [SPLIT regex] [USES rooms...] [LINKS libraries...] [INCLUDES directories...])
+# montelux_room(path/of/room [COLD] [USES rooms...] [LINKS libraries...] [INCLUDES directories...])
 # Compiles montelux/<room>/**.cpp; its unit tests are test/<room>/**_test.cpp. COLD: no code of the sampling loop.
-# SPLIT: files that match are never in one object with those that do not (montelux_split_room).
 function(montelux_room room)
-    cmake_parse_arguments(ARG "COLD" "SPLIT" "USES;LINKS;INCLUDES" ${ARGN})
+    cmake_parse_arguments(ARG "COLD" "" "USES;LINKS;INCLUDES" ${ARGN})
     string(REPLACE "/" "_" name "montelux_room_${room}")
     file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/montelux/${room}/*.cpp)
     if(sources)
         add_library(${name} OBJECT ${sources})
-        if(ARG_SPLIT)
-            montelux_split_room(${name} "${ARG_SPLIT}")
-        endif()
         set(scope PUBLIC)
         target_include_directories(${name} SYSTEM PRIVATE ${ARG_INCLUDES})
         target_link_libraries(${name} PRIVATE montelux_flags)
@@ -38,9 +34,11 @@ function(montelux_room room)
     set_property(GLOBAL PROPERTY MONTELUX_ROOM_LINKS_${name} "${ARG_LINKS}")
 endfunction()
 
-# montelux_split_room(target regex): also in unity builds, files that match are in other objects than those that do not.
-# A change of a BSDF then concerns one half, and a program can have other objects for one half (MonteluxSanitized.cmake).
-function(montelux_split_room target regex)
+# montelux_split_room(path/of/room regex): also in unity builds, files that match are in other objects than those that do
+# not. A change of a BSDF then concerns one half, and a program can have other objects for one half
+# (MonteluxSanitized.cmake).
+function(montelux_split_room room regex)
+    string(REPLACE "/" "_" target "montelux_room_${room}")
     get_target_property(sources ${target} SOURCES)
     set(matching ${sources})
     set(other ${sources})

@@ -1,7 +1,7 @@
 # Sanitized twins: rooms where memory can go wrong, compiled once more with the sanitizers, beside the plain code of all
 # other rooms. The build with MONTELUX_SANITIZE has the whole house under them.
 
-# montelux_sanitized_room(path/of/room): the objects montelux_room_NAME_sanitized; of a room with SPLIT, the
+# montelux_sanitized_room(path/of/room): the objects montelux_room_NAME_sanitized; of a room that is split, the
 # matching files alone.
 function(montelux_sanitized_room room)
     string(REPLACE "/" "_" name "montelux_room_${room}")
