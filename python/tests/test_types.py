@@ -52,20 +52,26 @@ def test_the_typed_file_runs():
     assert "did you mean 'alpha'" in typed_usage.mistakes()
 
 
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder for all runs of mypy, which keeps there what it knows of libraries."""
+    return tmp_path_factory.mktemp("mypy")
+
+
 @needs_mypy
-def test_mypy_passes_on_every_public_name(tmp_path):
-    assert "Success: no issues found" in checked(tmp_path, USAGE)
-    wrong = tmp_path / "wrong.py"
+def test_mypy_passes_on_every_public_name(folder):
+    assert "Success: no issues found" in checked(folder, USAGE)
+    wrong = folder / "wrong.py"
     wrong.write_text(
         "import montelux\n"
         "r = montelux.integrate(abs, (0, 1))\n"
         "a: int = r / r\n"
         "b: str = r.uncertain.standard_error\n"
     )
-    said = checked(tmp_path, wrong)
+    said = checked(folder, wrong)
     assert "wrong.py:3:" in said and "wrong.py:4:" in said
 
 
 @needs_mypy
-def test_mypy_passes_on_the_package(tmp_path):
-    assert "Success: no issues found" in checked(tmp_path, "-p", "montelux")
+def test_mypy_passes_on_the_package(folder):
+    assert "Success: no issues found" in checked(folder, "-p", "montelux")

@@ -293,9 +293,9 @@ class Checkpoints(ProgramTest):
         return without_seconds(self.output(f"{line} --checkpoint state --resume --json"))
 
     def test_killed_run_resumes_to_the_same_result(self):
-        line = f"{self.LINE} --evaluations 3e7 --quiet"
+        line = f"{self.LINE} --evaluations 1e7 --quiet"
         wanted = without_seconds(self.output(f"{line} --json"))
-        for wait in 0, 0.1, 0.3:
+        for wait in 0, 0.03, 0.1:
             with self.subTest(seconds=wait):
                 self.assertEqual(self.kill_and_resume(line, wait), wanted)
 

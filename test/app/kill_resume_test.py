@@ -85,18 +85,19 @@ class KillResume(ProgramTest):
         print(f"{seconds:.2f} s, {killed} kills, {resumed} with a checkpoint, {ended} ends compared", end=" ... ")
         self.assertGreaterEqual(2 * resumed, KILLS, "kills before the first checkpoint would show nothing")
 
-    def integral(self, method):
+    def integral(self, method, evaluations):
         self.survives("printed", f"integrate sin(x)*y+exp(-40*(z-0.5)^2) --over x,y,z=0:1 --method {method}"
-                      " --evaluations 2e6 --checkpoint state --checkpoint-every 0 --resume --quiet --json")  # fmt: skip
+                      f" --evaluations {evaluations} --checkpoint state --checkpoint-every 0 --resume --quiet"
+                      " --json")  # fmt: skip
 
     def test_basic_integral(self):
-        self.integral("basic")
+        self.integral("basic", "1e6")
 
     def test_vegas_integral(self):
-        self.integral("vegas")
+        self.integral("vegas", "1e6")
 
     def test_adaptive_integral(self):
-        self.integral("adaptive")
+        self.integral("adaptive", "5e5")
 
     def test_pictures(self):
         for sampler, adaptive in itertools.product(("independent", "sobol"), ("on", "off")):

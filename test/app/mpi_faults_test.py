@@ -7,8 +7,8 @@ import time
 from mpi import MpiTest
 from program import SKY, remove, scene
 
-WHOLE = "render ball.pbrt --sampler independent --spp 1500 --adaptive on --seed 3"
-ENDLESS = WHOLE + " --spp 100000 --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.3"
+WHOLE = "render ball.pbrt --sampler independent --spp 600 --adaptive on --seed 3"
+ENDLESS = WHOLE + " --spp 100000 --threads 1 -o many.exr --checkpoint state --checkpoint-every 0.1"
 
 
 class FaultTest(MpiTest):
@@ -79,8 +79,8 @@ class KilledRanks(FaultTest):
         self.kill_and_resume(WHOLE, 4, 1)
 
     def test_other_integrators_resume_to_the_same_bits(self):
-        for options in ("--spp 192 --integrator bidirectional", "--spp 640 --integrator metropolis",
-                        "--spp 640 --guiding on"):  # fmt: skip
+        for options in ("--spp 192 --integrator bidirectional", "--spp 128 --integrator metropolis",
+                        "--spp 256 --guiding on"):  # fmt: skip
             with self.subTest(options):
                 self.kill_and_resume(f"render ball.pbrt {options}", 2, 2)
 

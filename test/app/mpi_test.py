@@ -1,13 +1,11 @@
 """Renders and integrals by MPI ranks: results equal those of one process, and errors are printed once."""
 
-import itertools
-
 from mpi import MpiTest
 from program import edited, scene, without_seconds
 
 INTEGRATORS = [
     "--spp 16 --integrator bidirectional", "--spp 5 --integrator light-tracing --sampler independent",
-    "--spp 64 --integrator metropolis", "--spp 64 --guiding on", "--spp 300 --integrator auto",
+    "--spp 24 --integrator metropolis", "--spp 32 --guiding on", "--spp 300 --integrator auto",
     "--spp 6 --integrator bidirectional --merging auto",
 ]  # fmt: skip
 ADAPTIVE = ["--target-error 4% --sampler independent", "--spp 30 --adaptive on --seed 7"]
@@ -61,36 +59,41 @@ class Pictures(MpiTest):
 class Integrals(MpiTest):
     def test_integrals_equal_those_of_one_process(self):
         formulas = {"basic": "sin(x)*y+exp(-40*(z-0.5)^2)", "vegas": "1/(x+y+z)", "cubature": "x*y*z"}
-        for (method, formula), n in itertools.product(formulas.items(), (2, 3)):
-            with self.subTest(method, ranks=n):
-                line = (f"integrate {formula} --method {method} --over x,y,z=0:1 --evaluations 3e5 --seed 3 --json"
-                        " --quiet")  # fmt: skip
-                alone = self.output(line)
-                outcome = self.ranks(n, line + " --threads 1")
-                self.assertEqual(without_seconds(outcome.text), without_seconds(alone), outcome)
+        for method, formula in formulas.items():
+            line = f"integrate {formula} --method {method} --over x,y,z=0:1 --evaluations 3e5 --seed 3 --json --quiet"
+            alone = without_seconds(self.output(line))
+            jobs = [self.background(n, line + " --threads 1") for n in (2, 3)]
+            for n, job in zip((2, 3), jobs, strict=True):
+                with self.subTest(method, ranks=n):
+                    outcome = job.ended()
+                    self.assertEqual(without_seconds(outcome.text), alone, outcome)
 
 
 class Mistakes(MpiTest):
     def test_one_message_and_the_exit_code_of_one_process(self):
         scene("bad", 'Shape "spher"')
-        for n, code, text, line in [
+        mistakes = [
             (3, 1, "montelux: error: missing.pbrt", "render missing.pbrt"),
             (3, 1, "montelux: error: bad.pbrt:6:", "render bad.pbrt"),
             (3, 2, "'none' was given", "render ball.pbrt --spp none"),
             (3, 2, "montelux: error: --slice: there are fewer", "render ball.pbrt --spp 4 --slice 5/9"),
             (3, 2, "no pixel", f"render ball.pbrt {EMPTY_CROP}"),
             (3, 2, "montelux: error: ", "integrate x* --over x=0:1"),
-        ]:
+        ]
+        jobs = [self.background(n, line) for n, _, _, line in mistakes]
+        for (_, code, text, line), job in zip(mistakes, jobs, strict=True):
             with self.subTest(line):
-                self.assert_once(self.ranks(n, line), code, text)
+                self.assert_once(job.ended(), code, text)
 
     def test_message_of_rank_0_is_printed_if_it_fails_last(self):
         """Launchers kill the job as soon as one rank fails."""
         late = ["sh", "-c", '[ "$OMPI_COMM_WORLD_RANK" = 1 ] || sleep 2; exec "$@"', "-"]
-        for line in "render ball.pbrt --spp none", "integrate x* --over x=0:1":
+        lines = "render ball.pbrt --spp none", "integrate x* --over x=0:1"
+        jobs = [self.background(3, line, before=late) for line in lines]
+        for line, job in zip(lines, jobs, strict=True):
             with self.subTest(line):
                 alone = self.outcome(line)
-                self.assert_once(self.ranks(3, line, before=late), alone.code, alone.text.splitlines()[0])
+                self.assert_once(job.ended(), alone.code, alone.text.splitlines()[0])
 
     def test_mistake_that_rank_1_alone_finds(self):
         """Rank 1 fails while it builds the scene."""

@@ -17,7 +17,7 @@ class Signals(ProgramTest):
             for number in signal.SIGINT, signal.SIGTERM:
                 with self.subTest(sampler, signal=number):
                     job = self.start(f"render long.pbrt --sampler {sampler} --spp 4096")
-                    text = self.interrupted(job, number, seconds=2)
+                    text = self.interrupted(job, number, works=0.2, seconds=2)
                     self.assertIn("stopped before the end", text)
                     info = self.expect(0, '"interrupted" = 1', "info long.exr")
                     # Pixels without samples are black.
@@ -75,7 +75,7 @@ Material "mix" "string materials" ["white" "white"] "texture amount" "slow" Shap
         return any(name.startswith(".montelux-") and os.path.getsize(name) > 1 << 16 for name in os.listdir("."))
 
     def test_picture_that_is_being_written_is_finished(self):
-        job = self.start("render long.pbrt --resolution 1200x900 --spp 1 --quiet -o large.exr")
+        job = self.start("render long.pbrt --resolution 800x600 --spp 1 --quiet -o large.exr")
         in_time = 0
         while job.runs():
             if self.being_written(job):
@@ -85,7 +85,7 @@ Material "mix" "string materials" ["white" "white"] "texture amount" "slow" Shap
         outcome = job.ended()
         self.assertGreaterEqual(in_time, 1, "no signal came in time")
         self.assertEqual(outcome.code, 0, outcome)
-        self.expect(0, "1200 x 900 pixels, 20 channels", "info large.exr")
+        self.expect(0, "800 x 600 pixels, 20 channels", "info large.exr")
         self.assert_absent(".montelux-*")
 
     def test_more_threads_than_processors(self):

@@ -155,12 +155,16 @@ def hostile(viewer, count=10000):
         silent.append(s)
         if len(silent) > 400:
             silent.pop(0).close()
-    slow = [patient_viewer(viewer.url) for _ in range(8)]
+    viewer.ask(type="pixel", x=0, y=0)
+    viewer.next("pixel")
+    for s in silent:  # they would keep the next ones waiting
+        s.close()
+    slow = [patient_viewer(viewer.url) for _ in range(4)]
     for s in slow:  # answers are not read
         s.ask(type="show", layers=["mean", "error", "samples", "relative error"])
         for _ in range(200):
             s.ask(type="pixel", x=0, y=0)
-    time.sleep(2)
+    time.sleep(1)
     viewer.ask(type="pixel", x=1, y=1)
     viewer.next("pixel")
 

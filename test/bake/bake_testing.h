@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <functional>
 #include <gtest/gtest.h>
+#include <vector>
 
 #include "montelux/bake/environment_map.h"
 #include "montelux/mc/math/constants.h"
@@ -36,27 +36,48 @@ inline Vec3d equirectangular_direction(double u, double v) {
     return {std::sin(theta) * std::sin(angle), std::cos(theta), std::sin(theta) * std::cos(angle)};
 }
 
-// integral of radiance times weight(direction) by the midpoint rule with parts x parts points a texel.
-// `total_weight`, if given, becomes the integral of the weight alone.
-inline Vec3d sum_over_texels(const Image& image, int parts, const std::function<double(Vec3d)>& weight,
-                             double* total_weight = nullptr) {
-    Vec3d sum;
-    if (total_weight) *total_weight = 0;
-    for (int y = 0; y < image.height(); ++y)
-        for (int x = 0; x < image.width(); ++x) {
-            double total = 0;
-            for (int j = 0; j < parts; ++j)
-                for (int i = 0; i < parts; ++i) {
-                    const double u = (x + (i + 0.5) / parts) / image.width();
-                    const double v = (y + (j + 0.5) / parts) / image.height();
-                    total += weight(equirectangular_direction(u, v)) * std::sin(pi * v);
-                }
-            const double area =
-                2 * pi * pi / (static_cast<double>(image.width()) * image.height() * parts * parts);
-            if (total_weight) *total_weight += total * area;
-            sum += Vec3d{image.value(x, y, 0), image.value(x, y, 1), image.value(x, y, 2)} * (total * area);
-        }
-    return sum;
-}
+// The points of the midpoint rule with parts x parts points a texel.
+class TexelPoints {
+  public:
+    TexelPoints(const Image& image, int parts)
+        : image_(image), count_(static_cast<std::size_t>(parts) * static_cast<std::size_t>(parts)) {
+        const double area =
+            2 * pi * pi / (static_cast<double>(image.width()) * image.height() * parts * parts);
+        for (int y = 0; y < image.height(); ++y)
+            for (int x = 0; x < image.width(); ++x)
+                for (int j = 0; j < parts; ++j)
+                    for (int i = 0; i < parts; ++i) {
+                        const double u = (x + (i + 0.5) / parts) / image.width();
+                        const double v = (y + (j + 0.5) / parts) / image.height();
+                        points_.push_back({equirectangular_direction(u, v), std::sin(pi * v) * area});
+                    }
+    }
+
+    // integral of radiance times weight(direction). `total_weight`, if given,
+    // becomes the integral of the weight alone.
+    Vec3d sum(const auto& weight, double* total_weight = nullptr) const {
+        Vec3d sum;
+        if (total_weight) *total_weight = 0;
+        auto point = points_.begin();
+        for (int y = 0; y < image_.height(); ++y)
+            for (int x = 0; x < image_.width(); ++x) {
+                double total = 0;
+                for (std::size_t k = 0; k < count_; ++k, ++point)
+                    total += weight(point->direction) * point->solid_angle;
+                if (total_weight) *total_weight += total;
+                sum += Vec3d{image_.value(x, y, 0), image_.value(x, y, 1), image_.value(x, y, 2)} * total;
+            }
+        return sum;
+    }
+
+  private:
+    struct Point {
+        Vec3d direction;
+        double solid_angle;
+    };
+    const Image& image_;
+    std::size_t count_; // in a texel
+    std::vector<Point> points_;
+};
 
 } // namespace montelux

@@ -168,7 +168,7 @@ TEST(DiffuseHarmonics, AgreeWithQuadrature) {
                                     0.546274 * (d.x * d.x - d.y * d.y)};
                 return v[i];
             };
-            const Vec3d expected = sum_over_texels(image, 40, y);
+            const Vec3d expected = TexelPoints(image, 40).sum(y);
             EXPECT_NEAR(h.radiance[i].x, expected.x, 1e-3 * mean) << i;
             EXPECT_NEAR(h.radiance[i].z, expected.z, 1e-3 * mean) << i;
         }

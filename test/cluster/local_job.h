@@ -1,6 +1,7 @@
 // Ranks that are threads of this process, with mailboxes between them.
 #pragma once
 
+#include <atomic>
 #include <deque>
 #include <memory>
 #include <mutex>
@@ -66,6 +67,26 @@ class FailingMailbox final : public Mailbox {
     Mailbox& mailbox_;
     std::optional<int> last_;
     int left_;
+};
+
+// A mailbox whose first message can be waited for.
+class SpeakingMailbox final : public Mailbox {
+  public:
+    explicit SpeakingMailbox(Mailbox& mailbox) : mailbox_(mailbox) {}
+    int rank() const override { return mailbox_.rank(); }
+    int size() const override { return mailbox_.size(); }
+    void send(int to, int tag, std::vector<std::uint8_t> bytes) override {
+        mailbox_.send(to, tag, std::move(bytes));
+        spoke_ = true;
+        spoke_.notify_all();
+    }
+    std::optional<Message> receive() override { return mailbox_.receive(); }
+    // Returns once a message was sent.
+    void wait() const { spoke_.wait(false); }
+
+  private:
+    Mailbox& mailbox_;
+    std::atomic<bool> spoke_{false};
 };
 
 } // namespace montelux::testing

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <gtest/gtest.h>
+#include <memory>
 #include <optional>
 #include <string_view>
 #include <thread>
@@ -28,9 +29,9 @@ SceneDescription picture_of(IntegratorKind method, SamplerKind sampler, std::uin
     return d;
 }
 
-RenderState rendered(const SceneDescription& d, const RenderTarget& target = {}) {
-    RenderState state(d);
-    Renderer(d, target).render(state);
+RenderState rendered(const Renderer& renderer) {
+    RenderState state(renderer.description());
+    renderer.render(state);
     return state;
 }
 
@@ -45,8 +46,8 @@ void expect_equal(const RenderState& shared, const RenderState& whole, std::stri
 }
 
 // Interrupted again and again after about so many samples (of as many as picture_of asks for), and resumed by another number of ranks.
-RenderState interrupted(const SceneDescription& d, std::uint64_t samples, int& stops, int& within_passes) {
-    RenderState state(d);
+RenderState interrupted(const Renderer& renderer, std::uint64_t samples, int& stops, int& within_passes) {
+    RenderState state(renderer.description());
     for (bool ended = false; !ended; ++stops) {
         if (stops >= 1000) return state;
         RenderState saved = state;
@@ -59,7 +60,7 @@ RenderState interrupted(const SceneDescription& d, std::uint64_t samples, int& s
             saved = s;
             if (s.report.samples >= enough) cancel.request();
         };
-        render_on(1 + stops % 3, d, {}, state, control);
+        render_on(1 + stops % 3, renderer, state, control);
         ended = !state.report.cancelled();
         if (ended) continue;
         within_passes += saved.splats && open_samples(saved.film) > 0;
@@ -69,18 +70,22 @@ RenderState interrupted(const SceneDescription& d, std::uint64_t samples, int& s
 }
 
 TEST(SharedLightPaths, AnyNumberOfRanksGivesTheSameBits) {
+    SceneDescription pictures[] = {picture_of(IntegratorKind::bidirectional, SamplerKind::independent, 18),
+                                   picture_of(IntegratorKind::light_tracing, SamplerKind::independent, 18)};
+    const std::shared_ptr<const PreparedScene> prepared[] = {Renderer(pictures[0]).prepared(),
+                                                             Renderer(pictures[1]).prepared()};
     int combination = 0;
     for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol})
         for (const RenderTarget& target :
              {RenderTarget{}, RenderTarget{.error = 0.3}, RenderTarget{.slice = {1, 3}}}) {
-            const SceneDescription d = picture_of(combination % 2 == 0 ? IntegratorKind::bidirectional
-                                                                       : IntegratorKind::light_tracing,
-                                                  sampler, 18);
-            const RenderState whole = rendered(d, target);
+            SceneDescription& d = pictures[combination % 2];
+            d.sampler.kind = sampler;
+            const Renderer renderer(d, target, 0, prepared[combination % 2]);
+            const RenderState whole = rendered(renderer);
             // Every number of ranks, in turns to save time.
             for (const int ranks : {2 + combination % 2, combination == 0 ? 1 : 3 - combination % 2}) {
                 RenderState state(d);
-                render_on(ranks, d, target, state);
+                render_on(ranks, renderer, state);
                 expect_equal(state, whole, "ranks");
             }
             ++combination;
@@ -90,18 +95,19 @@ TEST(SharedLightPaths, AnyNumberOfRanksGivesTheSameBits) {
 TEST(SharedLightPaths, InterruptedRendersEndWithTheSameBits) {
     for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol}) {
         const SceneDescription d = picture_of(IntegratorKind::bidirectional, sampler, 40);
+        const Renderer renderer(d);
         int stops = 0, within_passes = 0;
-        expect_equal(interrupted(d, 3000, stops, within_passes), rendered(d), "interrupted");
+        expect_equal(interrupted(renderer, 3000, stops, within_passes), rendered(renderer), "interrupted");
         EXPECT_GE(stops, 3);
         EXPECT_TRUE(within_passes > 0 || sampler == SamplerKind::independent) << stops;
     }
 }
 
 // A rank falls silent after the third message of a kind: nothing of it counts, and a resumed render has the bits of `whole`.
-RenderState resumed_without(const SceneDescription& d, protocol::Tag last, const RenderState& whole) {
-    RenderState saved = render_until_lost(d, last, 3);
+RenderState resumed_without(const Renderer& renderer, protocol::Tag last, const RenderState& whole) {
+    RenderState saved = render_until_lost(renderer, last, 3);
     EXPECT_LT(saved.report.samples, whole.report.samples);
-    render_on(2, d, {}, saved);
+    render_on(2, renderer, saved);
     expect_equal(saved, whole, "lost");
     return saved;
 }
@@ -110,9 +116,10 @@ RenderState resumed_without(const SceneDescription& d, protocol::Tag last, const
 // end. Neither counts.
 TEST(SharedLightPaths, LostRanksLeaveNoSplatsAndNoSamples) {
     const SceneDescription d = picture_of(IntegratorKind::light_tracing, SamplerKind::sobol, 64);
-    const RenderState whole = rendered(d);
+    const Renderer renderer(d);
+    const RenderState whole = rendered(renderer);
     for (const protocol::Tag last : {protocol::tiles, protocol::splats, protocol::splat_counts})
-        resumed_without(d, last, whole);
+        resumed_without(renderer, last, whole);
 }
 
 SceneDescription merging_picture(SamplerKind sampler, std::uint32_t spp) {
@@ -133,13 +140,16 @@ void expect_equal_bias(const RenderState& shared, const RenderState& whole) {
 }
 
 TEST(SharedMerging, AnyNumberOfRanksGivesTheSameBits) {
+    SceneDescription d = merging_picture(SamplerKind::independent, 18);
+    const auto prepared = Renderer(d).prepared();
     for (const SamplerKind sampler : {SamplerKind::independent, SamplerKind::sobol})
         for (const RenderTarget& target : {RenderTarget{}, RenderTarget{.error = 0.3}}) {
-            const SceneDescription d = merging_picture(sampler, 18);
-            const RenderState whole = rendered(d, target);
+            d.sampler.kind = sampler;
+            const Renderer renderer(d, target, 0, prepared);
+            const RenderState whole = rendered(renderer);
             for (const int ranks : {1, 3}) {
                 RenderState state(d);
-                render_on(ranks, d, target, state);
+                render_on(ranks, renderer, state);
                 expect_equal(state, whole, "ranks");
                 expect_equal_bias(state, whole);
             }
@@ -148,8 +158,9 @@ TEST(SharedMerging, AnyNumberOfRanksGivesTheSameBits) {
 
 TEST(SharedMerging, InterruptedRendersEndWithTheSameBits) {
     const SceneDescription d = merging_picture(SamplerKind::sobol, 40);
+    const Renderer renderer(d);
     int stops = 0, within_passes = 0;
-    const RenderState whole = rendered(d), state = interrupted(d, 3000, stops, within_passes);
+    const RenderState whole = rendered(renderer), state = interrupted(renderer, 3000, stops, within_passes);
     expect_equal(state, whole, "interrupted");
     expect_equal_bias(state, whole);
     EXPECT_GE(stops, 3);
@@ -158,19 +169,22 @@ TEST(SharedMerging, InterruptedRendersEndWithTheSameBits) {
 
 TEST(SharedMerging, LostRanksLeaveNoSplatsAndNoSamples) {
     const SceneDescription d = merging_picture(SamplerKind::sobol, 64);
-    const RenderState whole = rendered(d);
+    const Renderer renderer(d);
+    const RenderState whole = rendered(renderer);
     for (const protocol::Tag last : {protocol::tiles, protocol::splat_counts, protocol::bias})
-        expect_equal_bias(resumed_without(d, last, whole), whole);
+        expect_equal_bias(resumed_without(renderer, last, whole), whole);
 }
 
 TEST(SharedChains, AnyNumberOfRanksGivesTheSameBits) {
+    const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+    const auto prepared = Renderer(d).prepared();
     for (const RenderTarget& target :
          {RenderTarget{}, RenderTarget{.error = 0.25}, RenderTarget{.slice = {1, 3}}}) {
-        const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
-        const RenderState whole = rendered(d, target);
+        const Renderer renderer(d, target, 0, prepared);
+        const RenderState whole = rendered(renderer);
         for (const int ranks : {2, target.error > 0 ? 3 : 1}) {
             RenderState state(d);
-            render_on(ranks, d, target, state);
+            render_on(ranks, renderer, state);
             expect_equal(state, whole, "ranks");
             const ChainStatistics &chains = state.report.chains, &alone = whole.report.chains;
             EXPECT_EQ(chains.groups, alone.groups);
@@ -185,20 +199,22 @@ TEST(SharedChains, AnyNumberOfRanksGivesTheSameBits) {
 
 TEST(SharedChains, InterruptedRendersEndWithTheSameBits) {
     const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
+    const Renderer renderer(d);
     int stops = 0, within_passes = 0;
-    expect_equal(interrupted(d, 396 * 14, stops, within_passes), rendered(d), "interrupted");
+    expect_equal(interrupted(renderer, 396 * 14, stops, within_passes), rendered(renderer), "interrupted");
     EXPECT_GE(stops, 3);
 }
 
 // A rank falls silent when its group is half sent, and between two groups.
 TEST(SharedChains, LostRanksLeaveNoPartOfAGroup) {
     const SceneDescription d = picture_of(IntegratorKind::metropolis, SamplerKind::independent, 48);
-    const RenderState whole = rendered(d);
+    const Renderer renderer(d);
+    const RenderState whole = rendered(renderer);
     for (const protocol::Tag last : {protocol::replicate_part, protocol::replicate}) {
-        RenderState saved = render_until_lost(d, last, 2);
+        RenderState saved = render_until_lost(renderer, last, 2);
         EXPECT_LT(saved.report.samples, whole.report.samples);
         EXPECT_GT(saved.report.samples, 0u);
-        render_on(2, d, {}, saved);
+        render_on(2, renderer, saved);
         expect_equal(saved, whole, "lost");
         EXPECT_EQ(saved.report.chains.groups, whole.report.chains.groups);
         EXPECT_EQ(saved.report.chains.small_accepted, whole.report.chains.small_accepted);
@@ -237,11 +253,12 @@ SceneDescription guided_picture(std::uint32_t spp) {
 TEST(SharedGuides, AnyNumberOfRanksGivesTheSameBits) {
     for (const RenderTarget& target : {RenderTarget{}, RenderTarget{.adaptive = true}}) {
         const SceneDescription d = guided_picture(96);
-        const RenderState whole = rendered(d, target);
+        const Renderer renderer(d, target);
+        const RenderState whole = rendered(renderer);
         ASSERT_NE(whole.guide, nullptr);
         for (int ranks = 1; ranks <= 3; ++ranks) {
             RenderState state(d);
-            render_on(ranks, d, target, state);
+            render_on(ranks, renderer, state);
             expect_equal(state, whole, "ranks");
             EXPECT_EQ(state.report.guide.rounds, whole.report.guide.rounds);
             EXPECT_EQ(state.report.guide.gain, whole.report.guide.gain);
@@ -252,17 +269,19 @@ TEST(SharedGuides, AnyNumberOfRanksGivesTheSameBits) {
 // Before and after the training; the ranks of the next job get the guide of the checkpoint.
 TEST(SharedGuides, InterruptedRendersEndWithTheSameBits) {
     const SceneDescription d = guided_picture(200);
+    const Renderer renderer(d);
     int stops = 0, within_passes = 0;
-    expect_equal(interrupted(d, 10'000, stops, within_passes), rendered(d), "interrupted");
+    expect_equal(interrupted(renderer, 10'000, stops, within_passes), rendered(renderer), "interrupted");
     EXPECT_GE(stops, 3);
 }
 
 // A rank that is ready only when the guide is trained gets it before its first tile.
 TEST(SharedGuides, LateRanksGetTheGuide) {
-    const SceneDescription d = guided_picture(1000);
-    const RenderState whole = rendered(d);
-    LocalJob job(2);
+    const SceneDescription d = guided_picture(300);
     const Renderer renderer(d);
+    const RenderState whole = rendered(renderer);
+    LocalJob job(2);
+    SpeakingMailbox speaking(job.mailbox(1));
     std::optional<std::thread> late;
     RenderState state(d);
     Coordinator coordinator(job.mailbox(0), d.film.crop, {.tile_size = 4, .threads = 1});
@@ -270,7 +289,8 @@ TEST(SharedGuides, LateRanksGetTheGuide) {
     control.executor = &coordinator;
     control.progress = [&](const RenderProgress& p) {
         if (late || p.samples_done < 2000) return;
-        late.emplace([&] { serve_render(renderer, job.mailbox(1), {.tile_size = 4, .threads = 1}); });
+        late.emplace([&] { serve_render(renderer, speaking, {.tile_size = 4, .threads = 1}); });
+        speaking.wait();
     };
     renderer.render(state, control);
     EXPECT_EQ(coordinator.threads(), 2);
@@ -282,10 +302,11 @@ TEST(SharedGuides, LateRanksGetTheGuide) {
 
 TEST(SharedGuides, LostRanksTakeNoPart) {
     const SceneDescription d = guided_picture(96);
-    RenderState saved = render_until_lost(d, protocol::guide_taken, 1);
+    const Renderer renderer(d);
+    RenderState saved = render_until_lost(renderer, protocol::guide_taken, 1);
     EXPECT_NE(saved.guide, nullptr);
-    render_on(2, d, {}, saved);
-    expect_equal(saved, rendered(d), "lost");
+    render_on(2, renderer, saved);
+    expect_equal(saved, rendered(renderer), "lost");
 }
 
 } // namespace

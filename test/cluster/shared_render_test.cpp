@@ -29,17 +29,20 @@ SceneBuilder scene(SamplerKind kind, std::uint32_t spp) {
 
 TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
     int combination = 0;
+    SceneBuilder b = scene(SamplerKind::independent, under_sanitizers ? 12 : 72);
+    const auto prepared = Renderer(b.description).prepared();
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
         for (const RenderTarget& target :
              {RenderTarget{}, RenderTarget{.adaptive = true}, RenderTarget{.error = 0.2, .adaptive = true},
               RenderTarget{.error = 0.25}, RenderTarget{.slice = {1, 3}}}) {
-            const SceneBuilder b = scene(kind, under_sanitizers ? 12 : 72);
+            b.description.sampler.kind = kind;
+            const Renderer renderer(b.description, target, 0, prepared);
             RenderState whole(b.description.film);
-            Renderer(b.description, target).render(whole);
+            renderer.render(whole);
             // Every number of ranks with every sampler, in turns to save time.
             for (int ranks = 1 + combination++ % 2; ranks <= 4; ranks += 2) {
                 RenderState state(b.description.film);
-                render_on(ranks, b.description, target, state);
+                render_on(ranks, renderer, state);
                 EXPECT_EQ(differing(whole.film, state.film), 0) << ranks << " ranks";
                 EXPECT_EQ(state.report.samples, whole.report.samples);
                 EXPECT_EQ(state.report.rays.rays(), whole.report.rays.rays());
@@ -52,13 +55,15 @@ TEST(SharedRender, AnyNumberOfRanksGivesTheSameBits) {
 TEST(SharedRender, LayersHaveTheSameBits) {
     SceneBuilder b = scene(SamplerKind::sobol, 48);
     b.description.film.layers.set = {Layer::position, Layer::direct, Layer::light_groups, Layer::shape};
+    const auto prepared = Renderer(b.description).prepared();
     for (const RenderTarget& target : {RenderTarget{}, RenderTarget{.error = 0.2, .adaptive = true}}) {
+        const Renderer renderer(b.description, target, 0, prepared);
         RenderState whole(b.description);
-        Renderer(b.description, target).render(whole);
+        renderer.render(whole);
         ASSERT_GT(whole.film.layer_sums().size(), 0u);
         for (int ranks = 1; ranks <= 3; ++ranks) {
             RenderState state(b.description);
-            render_on(ranks, b.description, target, state);
+            render_on(ranks, renderer, state);
             EXPECT_EQ(differing(whole.film, state.film), 0);
             EXPECT_TRUE(std::ranges::equal(whole.film.layer_sums(), state.film.layer_sums())) << ranks;
         }
@@ -69,8 +74,9 @@ TEST(SharedRender, LayersHaveTheSameBits) {
 TEST(SharedRender, SpectralFilmsHaveTheSameBits) {
     SceneDescription d = mixed_scene(48, 22, 18).description;
     d.film.spectral = SpectralSettings{.buckets = 6};
+    const Renderer renderer(d);
     RenderState whole(d);
-    Renderer(d).render(whole);
+    renderer.render(whole);
     const auto same = [](const BucketMoments& a, const BucketMoments& b) {
         return a.open == b.open && a.mean == b.mean && a.m2 == b.m2;
     };
@@ -83,9 +89,9 @@ TEST(SharedRender, SpectralFilmsHaveTheSameBits) {
         control.checkpoint = [&cancel](const RenderState& s) {
             if (s.report.samples > 4000) cancel.request();
         };
-        render_on(4 - ranks, d, {}, state, control);
+        render_on(4 - ranks, renderer, state, control);
         EXPECT_TRUE(state.report.cancelled());
-        render_on(ranks, d, {}, state);
+        render_on(ranks, renderer, state);
         EXPECT_EQ(differing(state.film, whole.film), 0) << ranks;
         EXPECT_TRUE(std::ranges::equal(std::as_const(state.film).buckets(),
                                        std::as_const(whole.film).buckets(), same))
@@ -98,11 +104,12 @@ TEST(SharedRender, SpectralFilmsHaveTheSameBits) {
 // Interrupted after some thousand samples and resumed by another number of ranks, none of which knows the
 // pixels.
 TEST(SharedRender, InterruptedRendersEndWithTheSameBits) {
+    const SceneBuilder b = scene(SamplerKind::independent, 100);
+    const auto prepared = Renderer(b.description).prepared();
     for (bool adaptive : {false, true}) {
-        const SceneBuilder b = scene(SamplerKind::independent, 100);
-        const RenderTarget target{.adaptive = adaptive};
+        const Renderer renderer(b.description, {.adaptive = adaptive}, 0, prepared);
         RenderState whole(b.description.film);
-        Renderer(b.description, target).render(whole);
+        renderer.render(whole);
         RenderState state(b.description.film);
         int stops = 0;
         for (bool ended = false; !ended; ++stops) {
@@ -118,7 +125,7 @@ TEST(SharedRender, InterruptedRendersEndWithTheSameBits) {
                 saved = s;
                 if (s.report.samples >= enough) cancel.request();
             };
-            render_on(1 + stops % 3, b.description, target, state, control);
+            render_on(1 + stops % 3, renderer, state, control);
             ended = !state.report.cancelled();
             if (!ended) state = saved;
         }
@@ -131,8 +138,9 @@ TEST(SharedRender, InterruptedRendersEndWithTheSameBits) {
 // Snapshots between the rounds, and finished tiles reported as they arrive.
 TEST(SharedRender, GivesSnapshots) {
     const SceneBuilder b = scene(SamplerKind::independent, 600);
+    const Renderer renderer(b.description);
     RenderState whole(b.description.film), state(b.description.film);
-    Renderer(b.description).render(whole);
+    renderer.render(whole);
     LiveFilm live;
     std::atomic<bool> ended{false};
     std::uint64_t looks = 0, seen = 0, wrong = 0;
@@ -153,7 +161,7 @@ TEST(SharedRender, GivesSnapshots) {
     control.tile = [&](const FinishedTile& t) {
         wrong += !tiles[t.round].emplace(t.bounds.x0, t.bounds.y0).second;
     };
-    render_on(3, b.description, {}, state, control);
+    render_on(3, renderer, state, control);
     ended = true;
     watcher.join();
     EXPECT_EQ(wrong, 0u);
@@ -167,9 +175,10 @@ TEST(SharedRender, GivesSnapshots) {
 // A rank without tiles gets those of another, in the middle of a round.
 TEST(SharedRender, TilesMoveToWhomHasNone) {
     const SceneBuilder b = scene(SamplerKind::independent, under_sanitizers ? 400 : 1500);
+    const Renderer renderer(b.description);
     RenderState whole(b.description.film), state(b.description.film);
-    Renderer(b.description).render(whole);
-    EXPECT_GT(render_on(3, b.description, {}, state), 0u);
+    renderer.render(whole);
+    EXPECT_GT(render_on(3, renderer, state), 0u);
     EXPECT_EQ(differing(whole.film, state.film), 0);
     // Pixels that were begun anew would have the same bits.
     EXPECT_EQ(state.report.samples, whole.report.samples);
@@ -202,14 +211,14 @@ TEST(SharedRender, AnotherRankCanBeCancelled) {
 // the bits of an undisturbed one.
 TEST(SharedRender, SilentRanksAreGivenUp) {
     const SceneBuilder b = scene(SamplerKind::independent, 400);
+    const Renderer renderer(b.description);
     RenderState whole(b.description.film), state(b.description.film), saved(b.description.film);
-    Renderer(b.description).render(whole);
+    renderer.render(whole);
     {
         LocalJob job(2);
         ByteWriter hello;
         hello.put(std::int32_t{2});
         job.mailbox(1).send(0, protocol::hello, hello.take());
-        const Renderer renderer(b.description);
         Coordinator coordinator(job.mailbox(0), b.description.film.crop,
                                 {.tile_size = 4, .threads = 1, .patience_seconds = 0.3});
         RenderControl control;
@@ -222,7 +231,7 @@ TEST(SharedRender, SilentRanksAreGivenUp) {
         EXPECT_GT(saved.report.samples, 0u);
         EXPECT_LT(saved.report.samples, whole.report.samples);
     }
-    render_on(2, b.description, {}, saved);
+    render_on(2, renderer, saved);
     EXPECT_EQ(differing(whole.film, saved.film), 0);
     EXPECT_EQ(saved.report.samples, whole.report.samples);
 }

@@ -42,13 +42,12 @@ class Helpers {
 };
 
 // Returns how many tiles changed hands.
-inline std::uint64_t render_on(int ranks, const SceneDescription& description, const RenderTarget& target,
-                               RenderState& state, RenderControl control = {}) {
+inline std::uint64_t render_on(int ranks, const Renderer& renderer, RenderState& state,
+                               RenderControl control = {}) {
     LocalJob job(ranks);
-    const Renderer renderer(description, target);
     const CoordinatorSettings settings{.tile_size = 4, .threads = 1};
     const Helpers helpers(job, renderer, ranks, settings.tile_size);
-    Coordinator coordinator(job.mailbox(0), description.film.crop, settings);
+    Coordinator coordinator(job.mailbox(0), renderer.description().film.crop, settings);
     control.executor = &coordinator;
     renderer.render(state, control);
     EXPECT_FALSE(coordinator.failed());
@@ -56,10 +55,10 @@ inline std::uint64_t render_on(int ranks, const SceneDescription& description, c
 }
 
 // A render led by one rank and taken by another, which falls silent: the state that was saved of it.
-inline RenderState render_until_lost(const SceneDescription& description, protocol::Tag last, int n) {
+inline RenderState render_until_lost(const Renderer& renderer, protocol::Tag last, int n) {
+    const SceneDescription& description = renderer.description();
     LocalJob job(2);
     FailingMailbox failing(job.mailbox(1), last, n);
-    const Renderer renderer(description);
     std::thread helper(
         [&] { serve_render(renderer, failing, {.tile_size = 4, .threads = 1, .patience_seconds = 60}); });
     RenderState state(description), saved(description);

@@ -26,15 +26,21 @@ inline std::vector<std::uint8_t> nanovdb_bytes(const std::vector<Handle>& grids,
     return {text.begin(), text.end()};
 }
 
-// A small grid of pseudo-random values around the origin, so in eight upper nodes, with tiles.
+// A box around the origin, so in eight upper nodes.
+inline const nanovdb::CoordBBox eight_nodes(nanovdb::Coord(-9, -3, -12), nanovdb::Coord(13, 19, 3));
+// Its part in two of them: a file of a quarter of the size.
+inline const nanovdb::CoordBBox two_nodes(nanovdb::Coord(-9, 0, -12), nanovdb::Coord(13, 19, -1));
+
+// A small grid of pseudo-random values, with tiles.
 inline Handle small_nanovdb(const std::string& name, nanovdb::ChecksumMode sums = nanovdb::ChecksumMode::Full,
-                            nanovdb::GridClass grid_class = nanovdb::GridClass::FogVolume, float least = 0) {
+                            nanovdb::GridClass grid_class = nanovdb::GridClass::FogVolume, float least = 0,
+                            const nanovdb::CoordBBox& box = eight_nodes) {
     nanovdb::GridBuilder<float> builder(0.0f, grid_class);
     builder.setChecksum(sums);
     auto accessor = builder.getAccessor();
-    for (int i = -9; i < 14; ++i)
-        for (int j = -3; j < 20; ++j)
-            for (int k = -12; k < 4; ++k) {
+    for (int i = box.min()[0]; i <= box.max()[0]; ++i)
+        for (int j = box.min()[1]; j <= box.max()[1]; ++j)
+            for (int k = box.min()[2]; k <= box.max()[2]; ++k) {
                 const auto hash = static_cast<unsigned>(i) * 73856093u ^
                                   static_cast<unsigned>(j) * 19349663u ^ static_cast<unsigned>(k) * 83492791u;
                 const bool constant = i >= 0 && i < 8 && j >= 8 && j < 16 && k < 0 && k >= -8;

@@ -126,7 +126,8 @@ std::vector<Include> includes_of(const SourceFile& file) {
     std::vector<Include> result;
     for (std::size_t i = 0; i < file.lines.size(); ++i) {
         std::smatch match;
-        if (std::regex_search(file.lines[i], match, directive))
+        if (file.lines[i].find('#') != std::string::npos &&
+            std::regex_search(file.lines[i], match, directive))
             result.push_back({i + 1, match[2], match[1] == "\""});
     }
     return result;

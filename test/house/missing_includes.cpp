@@ -108,10 +108,13 @@ std::vector<std::string> missing_includes(const std::vector<SourceFile>& files, 
     std::map<std::string, std::set<std::string>> declared; // headers that declare a name
     std::set<std::string> defined;                         // in one of them
     std::map<std::string, std::vector<Word>> words;
+    std::map<std::string, std::vector<std::string>> included;
     for (const SourceFile& file : files) {
         if (!file.path.starts_with(folder)) continue;
         by_path[file.path] = &file;
         words[file.path] = words_of(file);
+        for (const Include& include : includes_of(file))
+            if (include.quoted) included[file.path].push_back(include.target);
         if (!file.path.ends_with(".h")) continue;
         for (const std::string& name : declared_in(file, words[file.path], true))
             declared[name].insert(file.path);
@@ -131,8 +134,7 @@ std::vector<std::string> missing_includes(const std::vector<SourceFile>& files, 
             open.pop_back();
             if (!by_path.contains(next) || !reached.insert(next).second) continue;
             known.insert(own[next].begin(), own[next].end());
-            for (const Include& include : includes_of(*by_path[next]))
-                if (include.quoted) open.push_back(include.target);
+            open.insert(open.end(), included[next].begin(), included[next].end());
         }
         for (const Word& word : words[path]) {
             const auto headers = declared.find(word.text);

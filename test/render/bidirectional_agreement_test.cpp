@@ -67,8 +67,8 @@ std::vector<AgreementCase> rooms() {
 std::vector<AgreementCase> surfaces_and_cameras() {
     std::vector<AgreementCase> cases;
     const auto add = [&](const char* name, const SceneBuilder& b) {
-        cases.push_back({name, b});
-        cases.push_back({std::string(name) + " by light", b, by_light});
+        cases.push_back({.name = name, .scene = b, .samples = 24});
+        cases.push_back({std::string(name) + " by light", b, by_light, 24});
     };
     SceneBuilder plain = lit_corner();
     add_box_lamp(plain);
@@ -135,7 +135,7 @@ TEST(BidirectionalPicturesSlowTest, NoBiasOfOnePerCent) {
         {lights_of_all_kinds(), 40}, {rooms(), 40}, {surfaces_and_cameras(), 40}, {glass(), 80}};
     for (const auto& [cases, more] : sets)
         for (std::size_t i = 0; i < cases.size(); ++i) {
-            const Agreement r = agreement_in(cases[i], i, more);
+            const Agreement r = agreement_in(cases[i], i, 48 * more);
             EXPECT_LT(r.sigmas, 7) << cases[i].name << ": " << 100 * r.bias << " %";
             EXPECT_LT(r.bias, 0.01) << cases[i].name;
             EXPECT_LT(r.error, 0.004) << cases[i].name;

@@ -89,16 +89,17 @@ SceneBuilder bidirectional_room(int width, int height) {
 TEST(BidirectionalPictures, AnyNumberOfThreadsGivesTheSameBits) {
     SceneBuilder b = bidirectional_room(40, 24);
     b.description.sampler.spp = under_sanitizers ? 2 : 6;
+    const auto prepared = prepared_scene(b.description);
     for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         b.description.sampler.kind = kind;
         b.description.sampler.replicates = kind == SamplerKind::sobol ? 2 : 0;
         std::vector<Film> films;
         for (const int threads : {1, 2, 7})
-            with_threads(threads, [&] { films.push_back(render(b.description)); });
+            with_threads(threads, [&] { films.push_back(render(b.description, prepared)); });
         for (std::size_t i = 1; i < films.size(); ++i)
             EXPECT_EQ(differing(films[0], films[i]), 0) << int(kind);
         b.description.sampler.seed = 2;
-        EXPECT_GT(differing(films[0], render(b.description)), 900);
+        EXPECT_GT(differing(films[0], render(b.description, prepared)), 900);
         b.description.sampler.seed = 0;
     }
 }
@@ -107,11 +108,12 @@ TEST(BidirectionalPictures, AnyNumberOfThreadsGivesTheSameBits) {
 TEST(BidirectionalPictures, BrightLightPathsAreNotLost) {
     SceneBuilder b = bidirectional_room(40, 24);
     b.description.sampler.spp = 4;
-    const Image plain = render(b.description).develop();
+    const auto prepared = prepared_scene(b.description);
+    const Image plain = render(b.description, prepared).develop();
     constexpr float scale = 0x1p20f;
     b.description.film.iso *= scale;
     Film film(b.description.film);
-    EXPECT_EQ(Renderer(b.description).render(film).bad.count(), 0u);
+    EXPECT_EQ(Renderer(b.description, {}, 0, prepared).render(film).bad.count(), 0u);
     const Image bright = film.develop();
     double sum = 0, scaled = 0;
     for (int y = 0; y < plain.height(); ++y)
@@ -127,13 +129,14 @@ TEST(BidirectionalPictures, BrightLightPathsAreNotLost) {
 TEST(BidirectionalPictures, ResumedRendersHaveTheSameBits) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder / "render.state";
+    SceneBuilder b = bidirectional_room(40, 24);
+    const auto prepared = prepared_scene(b.description);
     for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
-        SceneBuilder b = bidirectional_room(40, 24);
         b.description.sampler.kind = kind;
         b.description.sampler.spp = under_sanitizers ? 6 : 28;
         RenderState whole(b.description);
-        Renderer(b.description).render(whole);
-        const Pieces pieces = render_in_pieces(b.description, path, whole.report.samples);
+        Renderer(b.description, {}, 0, prepared).render(whole);
+        const Pieces pieces = render_in_pieces(b.description, path, whole.report.samples, prepared);
         EXPECT_EQ(differing(pieces.state.film, whole.film), 0) << int(kind);
         EXPECT_GT(pieces.count, 2) << int(kind);
         EXPECT_GT(pieces.begun_within_a_pass, 0) << int(kind);
@@ -145,10 +148,11 @@ TEST(BidirectionalPictures, OpenPassesAreLeftOut) {
     SceneBuilder b = bidirectional_room(40, 24);
     b.description.sampler = {.kind = SamplerKind::sobol, .seed = 5, .spp = 32};
     b.description.sampler.replicates = 4;
-    RenderState whole(b.description);
-    Renderer(b.description).render(whole);
     const auto description = std::make_shared<const SceneDescription>(b.description);
-    RenderSession session(description, {});
+    const auto prepared = prepared_scene(*description);
+    RenderState whole(*description);
+    Renderer(*description, {}, 0, prepared).render(whole);
+    RenderSession session(description, {.prepared = prepared});
     CancelFlag cancel;
     RenderCompany company;
     company.keep_open = true;
@@ -182,10 +186,11 @@ std::string refusal_of(const SceneDescription& d, const RenderTarget& target = {
 }
 
 TEST(BidirectionalPictures, RefusesWhatItCannotDo) {
-    const SceneBuilder room = bidirectional_room(8, 8);
-    EXPECT_EQ(refusal_of(room.description), "");
+    SceneBuilder corner = lit_corner();
+    corner.description.integrator.method = IntegratorKind::bidirectional;
+    EXPECT_EQ(refusal_of(corner.description), "");
     const auto expect_refused = [&](const std::function<void(SceneDescription&)>& change, const char* word) {
-        SceneDescription d = room.description;
+        SceneDescription d = corner.description;
         change(d);
         EXPECT_NE(refusal_of(d).find(word), std::string::npos) << word << ": " << refusal_of(d);
         d.integrator.method = IntegratorKind::path;
@@ -199,8 +204,8 @@ TEST(BidirectionalPictures, RefusesWhatItCannotDo) {
     expect_refused([](auto& d) { d.integrator.shading_terminator = ShadingTerminator::soft; }, "terminator");
     expect_refused([](auto& d) { d.film.layers.set.add(Layer::direct); }, "parts of the light");
     expect_refused([](auto& d) { d.film.spectral = SpectralSettings{}; }, "spectral");
-    EXPECT_NE(refusal_of(room.description, {.adaptive = true}).find("--adaptive"), std::string::npos);
-    EXPECT_THROW(Renderer(room.description).replay(1, 1, 0), Error);
+    EXPECT_NE(refusal_of(corner.description, {.adaptive = true}).find("--adaptive"), std::string::npos);
+    EXPECT_THROW(Renderer(corner.description).replay(1, 1, 0), Error);
 }
 
 } // namespace

@@ -27,25 +27,27 @@ void expect_same(const Film& a, const Film& b) {
 
 // Interrupts the render after some more samples each time, and resumes it from the file.
 TEST_F(Checkpoint, InterruptedRendersEndWithTheSameBits) {
+    const SceneDescription scene = mixed_scene(1, 16, 12).description;
+    const auto prepared = prepared_scene(scene);
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol, SamplerKind::stratified})
         for (bool adaptive : {false, true}) {
-            SceneBuilder b = mixed_scene(1, 16, 12);
-            b.description.sampler.kind = kind;
-            b.description.sampler.spp = under_sanitizers ? 24 : 100;
+            SceneDescription uninterrupted = scene;
+            uninterrupted.sampler.kind = kind;
+            uninterrupted.sampler.spp = under_sanitizers ? 24 : 100;
             const RenderTarget target{.adaptive = adaptive};
-            RenderState whole(b.description.film);
-            Renderer(b.description, target).render(whole);
+            RenderState whole(uninterrupted.film);
+            Renderer(uninterrupted, target, 0, prepared).render(whole);
 
             int stops = 0;
             for (bool ended = false; !ended;) {
-                RenderState state(b.description.film);
-                SceneDescription description = b.description;
+                RenderState state(uninterrupted.film);
+                SceneDescription description = uninterrupted;
                 if (stops > 0) {
                     RestoredRender restored = load_checkpoint(path_, description, target);
                     description.sampler.replicate_points = restored.replicate_points;
                     state = std::move(restored.state);
                 }
-                const Renderer renderer(description, target);
+                const Renderer renderer(description, target, 0, prepared);
                 CancelFlag cancel;
                 const std::uint64_t begin = state.report.samples, more = 1 + hash_key(7, stops) % 4000;
                 RenderControl control;
@@ -70,21 +72,21 @@ TEST_F(Checkpoint, InterruptedRendersEndWithTheSameBits) {
 
 // The last generation may end anywhere; a finished render may be continued to more samples.
 TEST_F(Checkpoint, FinishedRendersCanBeRaised) {
+    SceneBuilder b = mixed_scene(1, 16, 16);
+    const auto prepared = prepared_scene(b.description);
     for (SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
-        SceneBuilder b = mixed_scene(1, 16, 16);
-        b.description.sampler.kind = kind;
-        b.description.sampler.spp = 36;
+        b.description.sampler = {.kind = kind, .spp = 36};
         RenderState first(b.description.film);
-        Renderer renderer(b.description);
+        Renderer renderer(b.description, {}, 0, prepared);
         RenderControl control;
         control.checkpoint = [&](const RenderState& s) { save_checkpoint(path_, renderer, s); };
         renderer.render(first, control);
         b.description.sampler.spp = 90;
         RestoredRender restored = load_checkpoint(path_, b.description, {});
         b.description.sampler.replicate_points = restored.replicate_points;
-        Renderer(b.description).render(restored.state);
+        Renderer(b.description, {}, 0, prepared).render(restored.state);
         RenderState whole(b.description.film);
-        Renderer(b.description).render(whole);
+        Renderer(b.description, {}, 0, prepared).render(whole);
         expect_same(restored.state.film, whole.film);
         EXPECT_EQ(restored.state.film.pixel(0, 0).samples(), 90u);
     }

@@ -3,6 +3,8 @@
 #include "test/render/mixed_scene.h"
 #include <algorithm>
 #include <gtest/gtest.h>
+#include <map>
+#include <memory>
 
 #include "montelux/mc/math/special.h"
 #include "montelux/mc/stats/z_test.h"
@@ -58,7 +60,7 @@ TEST(Calibration, OfEverySampler) {
             b.description.integrator.strategy = strategy;
             // Enough for the means of eight replicates to be nearly Gaussian.
             b.description.sampler.spp = 512;
-            TestResult r = calibration_test(scores(b, 0.6, 20));
+            TestResult r = calibration_test(scores(b, 0.6, 10));
             EXPECT_TRUE(r.passes(1e-7)) << "sampler " << int(kind) << ": " << r.description;
         }
 }
@@ -74,7 +76,7 @@ TEST(Calibration, OfLongPaths) {
         // Russian roulette makes samples skewed: at 64 of them the truth lies within 3 standard errors
         // in 98.5 %.
         b.description.sampler.spp = 1024;
-        TestResult r = calibration_test(scores(b, 2.5, 10));
+        TestResult r = calibration_test(scores(b, 2.5, 6));
         EXPECT_TRUE(r.passes(1e-7)) << "sampler " << int(kind) << ": " << r.description;
     }
 }
@@ -166,6 +168,7 @@ Quarters quarters(const Film& film) {
 TEST(Strategies, AgreeWithEachOther) {
     SceneBuilder b = mixed_scene(1, 16, 16);
     b.description.integrator.max_depth = 3;
+    std::map<bool, std::shared_ptr<const PreparedScene>> prepared; // with tables of the map for MIS or not
     std::vector<Quarters> all;
     std::vector<std::string> names;
     for (Strategy s : {Strategy::mis, Strategy::light, Strategy::bsdf, Strategy::uniform})
@@ -175,8 +178,10 @@ TEST(Strategies, AgreeWithEachOther) {
             b.description.integrator.heuristic = h;
             b.description.sampler.seed = all.size();
             // Those that find the lamps by chance are the noisy ones.
-            b.description.sampler.spp = s == Strategy::mis || s == Strategy::light ? 800 : 3000;
-            all.push_back(quarters(render(b.description)));
+            b.description.sampler.spp = s == Strategy::mis || s == Strategy::light ? 400 : 1200;
+            auto& of_strategy = prepared[s == Strategy::mis];
+            if (!of_strategy) of_strategy = prepared_scene(b.description);
+            all.push_back(quarters(render(b.description, of_strategy)));
             names.push_back(std::to_string(int(s)) + '/' + std::to_string(int(h)));
         }
     for (std::size_t i = 1; i < all.size(); ++i) {

@@ -86,7 +86,7 @@ TEST(CutOutLights, SpheresShineFromBothSides) {
             b.scene.shapes.back().flip_normal = false;
             std::get<AreaLight>(b.scene.lights[0]).two_sided = two_sided;
             b.description.integrator.strategy = s;
-            b.description.sampler.spp = 4096;
+            b.description.sampler.spp = 1024;
             means.push_back(picture_mean(render(b.description)));
         }
         // Of the light behind it the near side lets 0.6 through.

@@ -21,28 +21,34 @@ TEST(Determinism, AnyNumberOfThreads) {
     SceneBuilder b = mixed_scene(1, 40, 24);
     b.description.film.filter = GaussianFilter{};
     b.description.sampler.spp = under_sanitizers ? 4 : 16;
-    for (SamplerKind kind : samplers) {
-        b.description.sampler.kind = kind;
-        std::vector<Film> films;
-        for (int threads : {1, 2, 7}) {
-            with_threads(threads, [&] { films.push_back(render(b.description)); });
-        }
-        for (std::size_t i = 1; i < films.size(); ++i)
-            EXPECT_EQ(differing_pixels(films[0], films[i], films[0].bounds()), 0) << "sampler " << int(kind);
-    }
+    std::vector<std::vector<Film>> films; // of each number of threads, by sampler
+    for (const int threads : {1, 2, 7})
+        with_threads(threads, [&] {
+            const auto prepared = prepared_scene(b.description);
+            std::vector<Film>& of_samplers = films.emplace_back();
+            for (const SamplerKind kind : samplers) {
+                b.description.sampler.kind = kind;
+                of_samplers.push_back(render(b.description, prepared));
+            }
+        });
+    for (std::size_t i = 1; i < films.size(); ++i)
+        for (std::size_t k = 0; k < films[0].size(); ++k)
+            EXPECT_EQ(differing_pixels(films[0][k], films[i][k], films[0][k].bounds()), 0)
+                << "sampler " << int(samplers[k]);
 }
 
 // A window of the picture, whose tiles and their order are others, has the same pixels.
 TEST(Determinism, AnyCropAndOrderOfTiles) {
     SceneBuilder b = mixed_scene(1, 40, 24);
     b.description.sampler.spp = 8;
+    const auto prepared = prepared_scene(b.description);
     for (SamplerKind kind : samplers) {
         b.description.sampler.kind = kind;
         b.description.film.crop = {0, 0, 40, 24};
-        Film whole = render(b.description);
+        Film whole = render(b.description, prepared);
         for (PixelBounds crop : {PixelBounds{5, 3, 29, 20}, PixelBounds{39, 23, 40, 24}}) {
             b.description.film.crop = crop;
-            Film part = render(b.description);
+            Film part = render(b.description, prepared);
             EXPECT_EQ(differing_pixels(whole, part, crop), 0) << "sampler " << int(kind);
         }
     }
@@ -51,12 +57,13 @@ TEST(Determinism, AnyCropAndOrderOfTiles) {
 TEST(Determinism, SeedsDifferAndRepeat) {
     SceneBuilder b = mixed_scene(1, 8, 8);
     b.description.sampler.spp = 8;
+    const auto prepared = prepared_scene(b.description), prepared_again = prepared_scene(b.description);
     for (SamplerKind kind : samplers) {
         b.description.sampler.kind = kind;
         b.description.sampler.seed = 1;
-        Film first = render(b.description), again = render(b.description);
+        Film first = render(b.description, prepared), again = render(b.description, prepared_again);
         b.description.sampler.seed = 2;
-        Film other = render(b.description);
+        Film other = render(b.description, prepared);
         EXPECT_EQ(differing_pixels(first, again, first.bounds()), 0) << "sampler " << int(kind);
         EXPECT_EQ(differing_pixels(first, other, first.bounds()), 64) << "sampler " << int(kind);
     }

@@ -37,7 +37,7 @@ void expect_guiding_helps(SceneBuilder b, double least) {
     const double before = plain.film.error().relative, after = guided.film.error().relative;
     EXPECT_GT(before * before / (after * after), least) << before << ' ' << after;
 }
-TEST(GuidingMedia, PhaseFunctionsFindHiddenLight) { expect_guiding_helps(black_hidden_lamp(32), 2); }
+TEST(GuidingMedia, PhaseFunctionsFindHiddenLight) { expect_guiding_helps(black_hidden_lamp(22), 2); }
 TEST(GuidingMediaSlowTest, FogAndWallsFindHiddenLight) { expect_guiding_helps(foggy_hidden_lamp(32), 1.7); }
 
 // With interfaces, a grid and lamps that equiangular sampling finds.
@@ -69,7 +69,7 @@ TEST(GuidingMedia, IsUnbiasedInClouds) { expect_guiding_is_unbiased(cloud_beside
 
 // A floor like a blurred mirror.
 SceneBuilder polished_hidden_lamp(bool fog) {
-    SceneBuilder b = fog ? foggy_hidden_lamp(32) : hidden_lamp(32);
+    SceneBuilder b = fog ? foggy_hidden_lamp(32) : hidden_lamp(22);
     const RoughnessParameter polished{FloatParameter{0.1f}, FloatParameter{0.1f}, false};
     const Index metal =
         b.add(ConductorMaterial{.metal = {.eta = gray(0.2f), .k = gray(4)}, .roughness = polished});

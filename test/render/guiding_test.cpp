@@ -24,7 +24,7 @@ namespace montelux::testing {
 namespace {
 
 TEST(Guiding, FindsHiddenLightFarBetter) {
-    SceneBuilder b = hidden_lamp(40);
+    SceneBuilder b = hidden_lamp(28);
     b.description.sampler.spp = 256;
     const RenderState plain = render_guided(b.description);
     b.description.integrator.guiding = Guiding::on;
@@ -103,8 +103,8 @@ void expect_guided_calibration(const SceneBuilder& b, std::uint32_t spp, std::ui
 
 // The second scene has less skewed samples: there errors that are too small or too large by a tenth are seen.
 TEST(Guiding, ErrorsOfPixelsAreCalibrated) {
-    expect_guided_calibration(hidden_lamp(6, 0.7f, 0.8), 384, 24);
-    expect_guided_calibration(mixed_scene(1, 12, 12), 64, 64);
+    expect_guided_calibration(hidden_lamp(6, 0.7f, 0.8), 384, 16);
+    expect_guided_calibration(mixed_scene(1, 12, 12), 64, 36);
 }
 
 TEST(Guiding, AnyNumberOfThreads) {
@@ -198,8 +198,8 @@ TEST(Guiding, RendersCancelledBeforeTheTrainingEndWithTheSameBits) {
 }
 
 TEST(Guiding, AutomaticStaysWhereItWins) {
-    SceneBuilder b = hidden_lamp(64);
-    b.description.sampler.spp = 512;
+    SceneBuilder b = hidden_lamp(48);
+    b.description.sampler.spp = 224;
     b.description.integrator.guiding = Guiding::automatic;
     const RenderState state = render_guided(b.description);
     ASSERT_NE(state.guide, nullptr) << state.report.guide.gain << " after " << state.report.guide.samples;

@@ -3,6 +3,8 @@
 
 #include "test/render/mixed_scene.h"
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "montelux/image/image.h"
 
@@ -59,9 +61,10 @@ inline SceneBuilder square_below() {
     return b;
 }
 
-inline RenderState render_state(const SceneDescription& description) {
+inline RenderState render_state(const SceneDescription& description,
+                                std::shared_ptr<const PreparedScene> prepared = nullptr) {
     RenderState state(description);
-    Renderer(description).render(state);
+    Renderer(description, {}, 0, std::move(prepared)).render(state);
     return state;
 }
 

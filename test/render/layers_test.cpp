@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -27,9 +29,10 @@ TEST(Layers, ChangeNoBitOfTheMean) {
     for (const SceneBuilder& scene : {layered_scene(), foggy_scene()}) {
         SceneBuilder b = scene;
         b.description.sampler = {.kind = SamplerKind::sobol, .spp = 40};
-        const RenderState plain = render_state(b.description);
+        const auto prepared = prepared_scene(b.description);
+        const RenderState plain = render_state(b.description, prepared);
         b.description.film.layers.set = every_layer();
-        const RenderState layered = render_state(b.description);
+        const RenderState layered = render_state(b.description, prepared);
         EXPECT_EQ(differing_pixels(plain.film, layered.film), 0);
         EXPECT_EQ(plain.report.rays.rays(), layered.report.rays.rays());
     }
@@ -37,16 +40,20 @@ TEST(Layers, ChangeNoBitOfTheMean) {
 
 // Paths that are traced in batches and lanes give the numbers of single ones.
 TEST(Layers, AreThoseOfSinglePathsBitForBit) {
-    for (const SceneBuilder& scene : {layered_scene(), foggy_scene()})
+    for (const SceneBuilder& scene : {layered_scene(), foggy_scene()}) {
+        SceneBuilder b = scene;
+        std::map<bool, std::shared_ptr<const PreparedScene>>
+            prepared; // with tables of the map for MIS or not
         for (const Strategy strategy : {Strategy::mis, Strategy::bsdf, Strategy::light}) {
-            SceneBuilder b = scene;
             const std::uint32_t spp = under_sanitizers ? 2 : 8;
             b.description.sampler = {.kind = SamplerKind::independent, .spp = spp};
             b.description.integrator.strategy = strategy;
             b.description.film.filter = MitchellFilter{};
             b.description.film.max_component_value = 2;
             b.description.film.layers.set = every_layer();
-            const Renderer renderer(b.description);
+            auto& of_strategy = prepared[strategy == Strategy::mis];
+            if (!of_strategy) of_strategy = prepared_scene(b.description);
+            const Renderer renderer(b.description, {}, 0, of_strategy);
             RenderState state(b.description);
             renderer.render(state);
             const FilmLayers& layers = state.film.layers();
@@ -68,6 +75,7 @@ TEST(Layers, AreThoseOfSinglePathsBitForBit) {
                 }
             EXPECT_EQ(different, 0);
         }
+    }
 }
 
 TEST(Layers, AreSavedInCheckpointsAndOtherLayersAreRefused) {
@@ -76,9 +84,10 @@ TEST(Layers, AreSavedInCheckpointsAndOtherLayersAreRefused) {
     SceneBuilder b = layered_scene();
     b.description.sampler = {.kind = SamplerKind::sobol, .spp = 64};
     b.description.film.layers.set = every_layer();
-    const RenderState whole = render_state(b.description);
+    const auto prepared = prepared_scene(b.description);
+    const RenderState whole = render_state(b.description, prepared);
     RenderState state(b.description);
-    const Renderer renderer(b.description);
+    const Renderer renderer(b.description, {}, 0, prepared);
     CancelFlag cancel;
     RenderControl control;
     control.cancel = &cancel;
@@ -92,7 +101,7 @@ TEST(Layers, AreSavedInCheckpointsAndOtherLayersAreRefused) {
     RestoredRender restored = load_checkpoint(path, b.description, {});
     SceneDescription description = b.description;
     description.sampler.replicate_points = restored.replicate_points;
-    Renderer(description).render(restored.state);
+    Renderer(description, {}, 0, prepared).render(restored.state);
     EXPECT_EQ(differing_pixels(restored.state.film, whole.film), 0);
     EXPECT_TRUE(std::ranges::equal(restored.state.film.layer_sums(), whole.film.layer_sums()));
 
@@ -120,7 +129,7 @@ TEST(Layers, AreSavedInCheckpointsAndOtherLayersAreRefused) {
     other = b.description;
     other.scene.shape_names = {"wall"};
     expect_refused(other);
-    save_checkpoint(path, Renderer(b.description), whole);
+    save_checkpoint(path, renderer, whole);
     // What is computed from the pixels alone may be chosen anew.
     other = b.description;
     other.film.layers.set = LayerSet::standard();

@@ -35,7 +35,10 @@ double distance_from_mean(const Image& image, const std::vector<std::string>& la
 
 TEST(Layers, DirectAndIndirectAndLightGroupsSumToTheMean) {
     for (const SceneBuilder& scene : {layered_scene(), foggy_scene()})
-        for (const Strategy strategy : {Strategy::mis, Strategy::uniform, Strategy::mis_light})
+        for (const Strategy strategy : {Strategy::mis, Strategy::uniform, Strategy::mis_light}) {
+            SceneDescription of_strategy = scene.description;
+            of_strategy.integrator.strategy = strategy;
+            const auto prepared = prepared_scene(of_strategy);
             for (const LightGrouping grouping : {LightGrouping::light, LightGrouping::kind}) {
                 SceneBuilder b = scene;
                 // The last replicate is shorter than the others.
@@ -45,7 +48,7 @@ TEST(Layers, DirectAndIndirectAndLightGroupsSumToTheMean) {
                 b.description.film.max_component_value = 1.5f;
                 b.description.film.layers.set = {Layer::direct, Layer::indirect, Layer::light_groups};
                 b.description.film.layers.light_grouping = grouping;
-                const RenderState state = render_state(b.description);
+                const RenderState state = render_state(b.description, prepared);
                 const Image image = state.film.develop();
                 EXPECT_LT(distance_from_mean(image, {"direct", "indirect"}), 1e-5);
                 std::vector<std::string> groups;
@@ -59,6 +62,7 @@ TEST(Layers, DirectAndIndirectAndLightGroupsSumToTheMean) {
                     EXPECT_GT(distance_from_mean(image, {group}), 0.1) << group;
                 EXPECT_GT(distance_from_mean(image, {"direct"}), 0.1);
             }
+        }
 }
 
 // Each contribution of a path that a guide splits counts once, whichever branches begin after it.
@@ -110,9 +114,10 @@ TEST(Layers, DirectIsThePictureOfOneScatteringEvent) {
     SceneBuilder b = layered_scene();
     b.description.sampler = {.kind = SamplerKind::independent, .spp = 16};
     b.description.film.layers.set = {Layer::direct};
-    const Image all = render_state(b.description).film.develop();
+    const auto prepared = prepared_scene(b.description);
+    const Image all = render_state(b.description, prepared).film.develop();
     b.description.integrator.max_depth = 1;
-    const Image one = render_state(b.description).film.develop();
+    const Image one = render_state(b.description, prepared).film.develop();
     for (int y = 0; y < all.height(); ++y)
         for (int x = 0; x < all.width(); ++x)
             for (int c = 0; c < 3; ++c) {
@@ -146,7 +151,7 @@ TEST(Layers, LightGroupsAreThePicturesOfTheirLights) {
 }
 
 // Guided paths split and end by the light of all lamps; each group is still the picture of its own. Student's test of 16
-// seeds at 7 standard errors (two-sided: 4e-6 each): light of more than 14 % of a group in another one is seen, and the
+// seeds at 7 standard errors (two-sided: 4e-6 each): light of more than 18 % of a group in another one is seen, and the
 // test above sees lost light.
 TEST(Layers, LightGroupsOfGuidedPathsAreThePicturesOfTheirLights) {
     const std::vector<std::string> groups = {"hidden", "near"};
@@ -156,7 +161,7 @@ TEST(Layers, LightGroupsOfGuidedPathsAreThePicturesOfTheirLights) {
                b.add(DiffuseMaterial{gray(0)}), 4);
     b.scene.light_groups = groups;
     SceneDescription d = b.description;
-    d.sampler.spp = 128;
+    d.sampler.spp = 112;
     d.integrator.guiding = Guiding::on;
     d.film.layers.set = {Layer::light_groups};
     std::vector<RunningMoments> guided(groups.size());
@@ -178,11 +183,12 @@ TEST(Layers, LightGroupsOfGuidedPathsAreThePicturesOfTheirLights) {
         SceneBuilder alone = b;
         std::get<AreaLight>(alone.scene.lights[1 - g]).scale = 0;
         alone.description.sampler.seed = 1000;
+        const std::uint32_t spp = groups[g] == "hidden" ? 400 : 32; // paths without a guide rarely find it
         const RunningMoments expected =
-            render_of_seeds(alone.description, IntegratorKind::path, 512, seeds).channel[1];
+            render_of_seeds(alone.description, IntegratorKind::path, spp, seeds).channel[1];
         const double error = std::hypot(guided[g].standard_error(), expected.standard_error());
         EXPECT_NEAR(guided[g].mean(), expected.mean(), 7 * error) << groups[g];
-        EXPECT_LT(error, 0.02 * expected.mean()) << groups[g];
+        EXPECT_LT(error, 0.025 * expected.mean()) << groups[g];
         EXPECT_GT(std::abs(guided[1 - g].mean() - expected.mean()), 7 * error) << groups[g];
     }
 }

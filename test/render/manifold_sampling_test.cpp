@@ -252,10 +252,11 @@ TEST(ManifoldSampling, AgreesWithPathTracing) {
 // from the lights and manifold sampling find the same light.
 std::vector<Case> points() {
     std::vector<Case> cases;
-    const auto add = [&](const std::string& name, SceneBuilder b, const auto& change) {
+    const auto add = [&](const std::string& name, SceneBuilder b, const auto& change,
+                         std::uint32_t samples = 48) {
         change(b);
         b.description.integrator.max_depth = 2;
-        cases.push_back({name, b, 96});
+        cases.push_back({name, b, samples});
     };
     add("ball", lit_corner(), [](SceneBuilder& b) {
         add_point_light(b);
@@ -301,11 +302,12 @@ std::vector<Case> points() {
                    b.add(perfect_mirror()));
     });
     // The camera is in the water.
-    add("waves from below", lit_corner(), [](SceneBuilder& b) {
+    const auto add_water = [](SceneBuilder& b) {
         add_point_light(b, {0.4f, -0.5f, 4.5f});
         b.add_mesh(wavy_mesh(0.1, 10, Transform::translate({0, -1, 3}) * Transform::scale({5, 5, 1})),
                    b.add(DielectricMaterial{1.33f}));
-    });
+    };
+    add("waves from below", lit_corner(), add_water, 96);
     return cases;
 }
 
@@ -338,8 +340,9 @@ TEST(ManifoldSampling, AnyNumberOfThreads) {
 TEST(ManifoldSampling, InterruptedRendersEndWithTheSameBits) {
     TemporaryFolder folder;
     SceneDescription d = sampled(small_scene());
-    const Film whole = render(d);
-    const Pieces pieces = render_in_pieces(d, folder / "sampled.state", 64 * d.sampler.spp);
+    const auto prepared = prepared_scene(d);
+    const Film whole = render(d, prepared);
+    const Pieces pieces = render_in_pieces(d, folder / "sampled.state", 64 * d.sampler.spp, prepared);
     EXPECT_GT(pieces.count, 2);
     for (std::size_t i = 0; i < whole.pixels().size(); ++i)
         ASSERT_TRUE(same_pixel(whole.pixels()[i], pieces.state.film.pixels()[i]));

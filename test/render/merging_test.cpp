@@ -142,7 +142,9 @@ TEST(MergingPictures, FacetsOfSmoothMeshesAreLitAsByPaths) {
 
 TEST(MergingPictures, AgreesWithPathTracing) {
     std::vector<AgreementCase> cases;
-    const auto add = [&](const char* name, const SceneBuilder& b) { cases.push_back({name, b}); };
+    const auto add = [&](const char* name, const SceneBuilder& b, std::uint32_t samples = 32) {
+        cases.push_back({.name = name, .scene = b, .samples = samples});
+    };
     for (const Heuristic heuristic : {Heuristic::balance, Heuristic::power}) {
         SceneBuilder room = mixed_scene(1, 8, 8);
         room.description.integrator.heuristic = heuristic;
@@ -170,12 +172,14 @@ TEST(MergingPictures, AgreesWithPathTracing) {
                              .z_max = 0.4f,
                              .world_from_object = Transform::translate({0.2, 0, 0.5})},
                       glass.add(DielectricMaterial{add_spectrum(glass.scene, flint), alpha_of(0.3f)}));
-    add("dispersive glass", glass);
+    add("dispersive glass", glass, 64);
     double squares = 0, pixels = 0;
     for (std::size_t i = 0; i < cases.size(); ++i) {
         SceneDescription d = cases[i].scene.description;
         d.sampler.seed = 1000 * i;
-        const Agreement r = agreement_of(render_of_seeds(d, IntegratorKind::path, 64), merged(d, 0.06f, 64));
+        const std::uint32_t samples = cases[i].samples;
+        const Agreement r =
+            agreement_of(render_of_seeds(d, IntegratorKind::path, samples), merged(d, 0.06f, samples));
         EXPECT_LT(r.error, 0.06) << cases[i].name;
         EXPECT_LT(r.bias, 7 * r.error + 0.004) << cases[i].name;
         squares += r.squares;
@@ -278,6 +282,7 @@ bool same(const MergingSummary& a, const MergingSummary& b) {
 TEST(MergingPictures, AnyNumberOfThreadsGivesTheSameBits) {
     SceneBuilder b = merging_room(40, 24);
     b.description.sampler.spp = under_sanitizers ? 2 : 6;
+    const auto prepared = prepared_scene(b.description);
     for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         b.description.sampler.kind = kind;
         b.description.sampler.replicates = kind == SamplerKind::sobol ? 2 : 0;
@@ -285,7 +290,7 @@ TEST(MergingPictures, AnyNumberOfThreadsGivesTheSameBits) {
         for (const int threads : {1, 2, 7})
             with_threads(threads, [&] {
                 RenderState& state = states.emplace_back(b.description);
-                Renderer(b.description).render(state);
+                Renderer(b.description, {}, 0, prepared).render(state);
             });
         for (std::size_t i = 1; i < states.size(); ++i) {
             EXPECT_EQ(differing(states[0].film, states[i].film), 0) << int(kind);
@@ -299,13 +304,14 @@ TEST(MergingPictures, AnyNumberOfThreadsGivesTheSameBits) {
 TEST(MergingPictures, ResumedRendersHaveTheSameBits) {
     const TemporaryFolder folder;
     const std::filesystem::path path = folder / "render.state";
+    SceneBuilder b = merging_room(40, 24);
+    const auto prepared = prepared_scene(b.description);
     for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
-        SceneBuilder b = merging_room(40, 24);
         b.description.sampler.kind = kind;
         b.description.sampler.spp = under_sanitizers ? 6 : 12;
         RenderState whole(b.description);
-        Renderer(b.description).render(whole);
-        const Pieces pieces = render_in_pieces(b.description, path, whole.report.samples);
+        Renderer(b.description, {}, 0, prepared).render(whole);
+        const Pieces pieces = render_in_pieces(b.description, path, whole.report.samples, prepared);
         EXPECT_EQ(differing(pieces.state.film, whole.film), 0) << int(kind);
         EXPECT_TRUE(same(pieces.state.report.merging, whole.report.merging)) << int(kind);
         EXPECT_GT(pieces.count, 2);
@@ -350,13 +356,14 @@ TEST(MergingPictures, SeedsAndPixelsHaveOtherLightPaths) {
 TEST(MergingPictures, SlicesTakeTheSamplesOfTheWhole) {
     SceneBuilder b = merging_room(16, 12);
     b.description.sampler.spp = 4;
-    const Film whole = render(b.description);
+    const auto prepared = prepared_scene(b.description);
+    const Film whole = render(b.description, prepared);
     std::vector<Film> parts;
     for (const std::uint32_t index : {0u, 1u}) {
         RenderTarget target;
         target.slice = {index, 2};
         RenderState state(b.description);
-        Renderer(b.description, target).render(state);
+        Renderer(b.description, target, 0, prepared).render(state);
         parts.push_back(std::move(state.film));
     }
     for (std::size_t i = 0; i < whole.pixels().size(); ++i) {

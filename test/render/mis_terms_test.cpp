@@ -20,9 +20,10 @@ SceneBuilder small_mixed_scene(Strategy strategy, SamplerKind sampler, Heuristic
 TEST(MisTerms, AddUpToThePictureOfMis) {
     for (const auto& setting : {std::pair{SamplerKind::independent, Heuristic::power},
                                 std::pair{SamplerKind::sobol, Heuristic::balance}}) {
-        auto picture = [&](Strategy s) {
-            return render(small_mixed_scene(s, setting.first, setting.second).description);
-        };
+        const auto scene = [&](Strategy s) { return small_mixed_scene(s, setting.first, setting.second); };
+        const SceneBuilder mis = scene(Strategy::mis);
+        const auto prepared = prepared_scene(mis.description);
+        const auto picture = [&](Strategy s) { return render(scene(s).description, prepared); };
         const Film both = picture(Strategy::mis), bsdf = picture(Strategy::mis_bsdf),
                    light = picture(Strategy::mis_light);
         double sums[2] = {};

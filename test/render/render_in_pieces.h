@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <gtest/gtest.h>
+#include <memory>
 #include <utility>
 
 #include "montelux/mc/parallel/parallel_for.h"
@@ -22,7 +23,7 @@ struct Pieces {
 // Where it stops depends on samples alone: after up to a quarter of `samples`, those of the whole render. The checkpoint
 // is at `path`.
 inline Pieces render_in_pieces(const SceneDescription& whole, const std::filesystem::path& path,
-                               std::uint64_t samples) {
+                               std::uint64_t samples, std::shared_ptr<const PreparedScene> prepared) {
     Pieces pieces{RenderState(whole)};
     for (bool ended = false; !ended && pieces.count < 1000; ++pieces.count) {
         RenderState state(whole);
@@ -33,7 +34,7 @@ inline Pieces render_in_pieces(const SceneDescription& whole, const std::filesys
             state = std::move(restored.state);
             pieces.begun_within_a_pass += open_samples(state.film) > 0;
         }
-        const Renderer renderer(description);
+        const Renderer renderer(description, {}, 0, prepared);
         CancelFlag cancel;
         const std::uint64_t end = state.report.samples + 1 + hash_key(7, pieces.count) % (samples / 4);
         RenderControl control;

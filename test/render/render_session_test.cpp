@@ -47,14 +47,15 @@ Attributes header_of(const Image& image) {
 }
 
 TEST(FinishedTiles, EachIsReportedOncePerRound) {
+    const auto d = described(SamplerKind::independent, 100);
+    const auto prepared = prepared_scene(*d);
     for (const bool adaptive : {false, true})
         for (const double checkpoint_seconds : {1e9, 0.001, 0.0}) {
             // Pauses for checkpoints cut tiles short, which are finished later in the round, or leave them
             // out, even those that lack no samples in this round. With 0 seconds each batch ends in a pause;
             // one thread then meets such a tile in every run of the test.
             const ThreadLimit threads(checkpoint_seconds > 0 ? 0 : 1);
-            const auto d = described(SamplerKind::independent, 100);
-            const Renderer renderer(*d, {.adaptive = adaptive});
+            const Renderer renderer(*d, {.adaptive = adaptive}, 0, prepared);
             RenderState state(d->film);
             std::mutex mutex;
             std::map<std::uint64_t, std::map<std::pair<int, int>, int>> calls; // of rounds and tiles
@@ -165,7 +166,8 @@ TEST(Snapshots, ChangeNoBitAndAreBetweenSamples) {
     all.film.spectral = SpectralSettings{.lambda_min = 400, .lambda_max = 700, .buckets = 2};
     all.film.layers.set.add(Layer::position);
     const auto d = std::make_shared<const SceneDescription>(all);
-    RenderSession plain(d, {}), watched(d, {});
+    const auto prepared = prepared_scene(*d);
+    RenderSession plain(d, {.prepared = prepared}), watched(d, {.prepared = prepared});
     plain.render();
     const RenderSnapshot whole = plain.finish();
 
@@ -194,7 +196,7 @@ TEST(Snapshots, ChangeNoBitAndAreBetweenSamples) {
         SceneDescription of_spp = *d;
         of_spp.sampler.spp = static_cast<std::uint32_t>(std::max(spp, 1));
         RenderState state(of_spp);
-        if (spp > 0) Renderer(of_spp).render(state);
+        if (spp > 0) Renderer(of_spp, {}, 0, prepared).render(state);
         return renders.emplace(spp, state.film.develop()).first->second;
     };
     const auto channel = [&](const char* name) { return *whole.image->find_channel(name); };
@@ -247,16 +249,18 @@ class Sessions : public ::testing::Test {
 };
 
 TEST_F(Sessions, ResumeToTheSameBits) {
+    const auto scene = described(SamplerKind::independent, 64);
+    const auto prepared = prepared_scene(*scene);
     for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
         const auto d = described(kind, 64);
-        RenderSession plain(d, {});
+        RenderSession plain(d, {.prepared = prepared});
         plain.render();
         const RenderSnapshot whole = plain.finish();
         EXPECT_FALSE(plain.resumed());
 
         const std::filesystem::path path = folder_ / ("render" + std::to_string(int(kind)));
         CancelFlag cancel;
-        RenderSession first(d, {.target = {}, .scene_name = {}, .checkpoint = path});
+        RenderSession first(d, {.target = {}, .scene_name = {}, .checkpoint = path, .prepared = prepared});
         std::atomic<int> tiles{0};
         first.render({.tile =
                           [&](const FinishedTile&) {

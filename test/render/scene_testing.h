@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cmath>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "montelux/film/film.h"
@@ -105,9 +107,15 @@ inline bool same_pixel(const Pixel& a, const Pixel& b) {
            a.depth() == b.depth();
 }
 
-inline Film render(const SceneDescription& description) {
+// Serves all renders of this scene, which must outlive it: film, samples and the place of the camera may differ.
+inline std::shared_ptr<const PreparedScene> prepared_scene(const SceneDescription& description) {
+    return std::make_shared<const PreparedScene>(description);
+}
+
+inline Film render(const SceneDescription& description,
+                   std::shared_ptr<const PreparedScene> prepared = nullptr) {
     Film film(description.film);
-    Renderer(description).render(film);
+    Renderer(description, {}, 0, std::move(prepared)).render(film);
     return film;
 }
 

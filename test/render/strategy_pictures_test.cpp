@@ -5,7 +5,9 @@
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/math/error.h"
@@ -29,11 +31,14 @@ SceneDescription strategies_scene(SamplerKind kind = SamplerKind::independent) {
 }
 
 TEST(StrategyPictures, SumToTheRender) {
-    for (const IntegratorKind method : {IntegratorKind::bidirectional, IntegratorKind::light_tracing})
+    for (const IntegratorKind method : {IntegratorKind::bidirectional, IntegratorKind::light_tracing}) {
+        SceneDescription of_method = strategies_scene();
+        of_method.integrator.method = method;
+        const auto prepared = prepared_scene(of_method);
         for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol}) {
             SceneDescription d = strategies_scene(kind);
             d.integrator.method = method;
-            const Renderer renderer(d);
+            const Renderer renderer(d, {}, 0, prepared);
             RenderState state(d);
             renderer.render(state);
             const std::vector<StrategyPicture> pictures = strategy_pictures(renderer);
@@ -48,6 +53,7 @@ TEST(StrategyPictures, SumToTheRender) {
                 }
             }
         }
+    }
 }
 
 TEST(StrategyPictures, ThreadsDoNotMatter) {
@@ -101,7 +107,8 @@ void expect_refused(const SceneDescription& d, const std::string& reason) {
 }
 
 TEST(StrategyPictures, RefusesWhatHasNone) {
-    SceneDescription d = strategies_scene();
+    SceneDescription d = lit_corner().description;
+    d.integrator.method = IntegratorKind::bidirectional;
     d.integrator.max_depth = most_strategy_depth + 1;
     expect_refused(d, "max_depth is 13; expected at most 12");
     d.integrator.max_depth = 5;
@@ -118,9 +125,10 @@ TEST(StrategyPictures, RefusesWhatHasNone) {
     EXPECT_TRUE(strategy_pictures(Renderer(d), [] { return true; }).empty());
 }
 
-std::vector<ChainWalk> traces_of(const SceneDescription& d, std::size_t chains, ChainReplicate* replicate) {
+std::vector<ChainWalk> traces_of(const SceneDescription& d, std::size_t chains, ChainReplicate* replicate,
+                                 std::shared_ptr<const PreparedScene> prepared = nullptr) {
     std::vector<ChainWalk> traces;
-    Renderer(d).serve([&](const SampleTakers& takers) {
+    Renderer(d, {}, 0, std::move(prepared)).serve([&](const SampleTakers& takers) {
         const GroupWatch watch{[] { return false; }, [](std::uint64_t) {}};
         traces = takers.chains->trace(2, chains, watch);
         if (replicate != nullptr) *replicate = std::move(takers.chains->take(2, 1, watch).front());
@@ -129,12 +137,15 @@ std::vector<ChainWalk> traces_of(const SceneDescription& d, std::size_t chains, 
 }
 
 TEST(ChainWalks, AreTheWalksOfTheRender) {
-    SceneDescription d = strategies_scene();
+    SceneBuilder b = lit_corner();
+    add_box_lamp(b);
+    SceneDescription& d = b.description;
     d.integrator.method = IntegratorKind::metropolis;
     d.integrator.max_depth = 2;
-    d.sampler.spp = 62000; // of which a group has a 32nd: bundles of more than one chain
+    d.sampler.spp = 151000; // of which a group has a 32nd: bundles of more than one chain
     ChainReplicate replicate;
-    const std::vector<ChainWalk> all = traces_of(d, 1000, &replicate);
+    const auto prepared = prepared_scene(d);
+    const std::vector<ChainWalk> all = traces_of(d, 1000, &replicate, prepared);
     const ChainStatistics& s = replicate.tally.statistics;
     ASSERT_EQ(all.size(), s.chains);
     ASSERT_EQ(s.chains, 32u);
@@ -156,7 +167,7 @@ TEST(ChainWalks, AreTheWalksOfTheRender) {
     EXPECT_NEAR(large_accepted, s.large_accepted, 1e-9 * s.large_accepted);
     EXPECT_NEAR(small_accepted, s.small_accepted, 1e-9 * s.small_accepted);
     // The first ones are the same alone.
-    const std::vector<ChainWalk> few = traces_of(d, 2, nullptr);
+    const std::vector<ChainWalk> few = traces_of(d, 2, nullptr, prepared);
     ASSERT_EQ(few.size(), 2u);
     for (std::size_t c = 0; c < few.size(); ++c)
         for (std::size_t t = 0; t < few[c].steps.size(); ++t)

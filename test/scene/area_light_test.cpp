@@ -139,9 +139,9 @@ TEST(AreaLights, DirectionsFollowTheirDensity) {
             return sum;
         };
         ChiSquaredOptions options;
-        options.samples = 100000;
+        options.samples = 50000;
         // Fine enough that the quadrature of the density misses no sliver of the light.
-        options.cells_x = options.cells_y = 48;
+        options.cells_x = options.cells_y = 24;
         if (c.name.find("within") == std::string::npos) options.cos_theta_min = 0;
         TestResult r = spherical_chi_squared_test(sample, pdf, options);
         EXPECT_TRUE(r.passes(1e-8)) << c.name << ": " << r.description;

@@ -93,10 +93,10 @@ TEST(EnvironmentGrid, LatitudeAndLongitude) {
 TEST(EnvironmentSamplers, DirectionsFollowTheirDensity) {
     for_each_sampler([](const Image&, const EnvironmentSampler& sampler) {
         const EnvironmentGrid& grid = sampler.grid();
-        constexpr int parts = 2, points = 128; // cells along a texel, points of the quadrature in a cell
+        constexpr int parts = 2, points = 32; // cells along a texel, points of the quadrature in a cell
         const int columns = parts * grid.width(), rows = parts * grid.height();
         std::vector<double> observed(static_cast<std::size_t>(columns * rows)), expected = observed;
-        constexpr int samples = 40000;
+        constexpr int samples = 20000;
         double sum = 0;
         for (int y = 0; y < rows; ++y)
             for (int x = 0; x < columns; ++x) {

@@ -91,10 +91,12 @@ TEST(MemoryUse, TheSumIsWhatTheHeapGave) {
     const std::size_t before = heap_bytes();
     auto scene = std::make_unique<Scene>();
     scene->meshes.push_back(strip(50000));
+    scene->meshes.push_back(strip(4)); // has the instances
     scene->shapes.push_back({MeshIndex{0}});
+    scene->shapes.push_back({MeshIndex{1}});
     scene->world_shapes.push_back(0);
     scene->materials.emplace_back(DiffuseMaterial{});
-    scene->shapes[0].material = 0;
+    for (Shape& shape : scene->shapes) shape.material = 0;
     scene->images.emplace_back(512, 300, std::vector<std::string>{"R", "G", "B"}, PixelFormat::u8,
                                ColorEncoding::srgb());
     scene->environments.emplace_back(512, 256, std::vector<std::string>{"R", "G", "B"});
@@ -103,7 +105,7 @@ TEST(MemoryUse, TheSumIsWhatTheHeapGave) {
     map.environment = 0;
     map.layout = EnvironmentLayout::equirectangular;
     scene->lights.emplace_back(map);
-    scene->objects.push_back({{0}});
+    scene->objects.push_back({{1}});
     scene->instances.assign(10000, Instance{0, Transform(), no_index});
     SparseGrid grid;
     grid.values.assign(100 * SparseGrid::block_size, 1.0f);

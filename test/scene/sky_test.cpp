@@ -153,10 +153,10 @@ TEST(Sky, SingleScatteringAgreesWithFineQuadrature) {
 
 // All orders of scattering.
 TEST(Sky, AgreesWithRandomWalks) {
-    for (double elevation : {60.0, 20.0})
+    for (double elevation : {60.0, 20.0}) {
+        const SkyModel sky = sky_of(elevation);
+        const Atmosphere atmosphere(sky.settings().atmosphere);
         for (int band : {4, 19}) {
-            const SkyModel sky = sky_of(elevation);
-            const Atmosphere atmosphere(sky.settings().atmosphere);
             SkyWalk walk(atmosphere, band, 0.2, elevation, 11);
             for (Vec3d w : {at_angles(90, 0), at_angles(45, 90), at_angles(4, 180)}) {
                 const RunningMoments m = walk.radiance(w, 4000);
@@ -166,6 +166,7 @@ TEST(Sky, AgreesWithRandomWalks) {
                     << elevation << " " << band << " " << w.z;
             }
         }
+    }
 }
 
 // ASTM G173-03: direct spectral irradiance for the sun at 1.5 air masses, W/(m^2 nm).
@@ -208,15 +209,16 @@ TEST(Sky, DaylightIsAsBrightAsItIs) {
     EXPECT_LT(dome / (sun + dome), 0.2);
     // About half of the 900 W/m^2 of all wavelengths is in those that the sky is computed for.
     EXPECT_NEAR(radiometric_sum(noon.sun_irradiance()) + radiometric_sum(noon.sky_irradiance()), 590, 40);
-    const double low_share = photometric_sum(low.sky_irradiance()) /
-                             (photometric_sum(low.sun_irradiance()) + photometric_sum(low.sky_irradiance()));
-    EXPECT_GT(low_share, 0.35);
+    const double low_dome = photometric_sum(low.sky_irradiance());
+    EXPECT_LT(low_dome, dome);
+    EXPECT_GT(low_dome / (photometric_sum(low.sun_irradiance()) + low_dome), 0.35);
     // 1.6e9 cd/m^2 at noon.
     EXPECT_NEAR(photometric_sum(noon.sun_radiance()), 1.5e9, 0.15e9);
     // Civil dusk ends at 3.4 lx, without a moon (Seidelmann 1992, Explanatory Supplement, table 9.3).
     const double dusk = photometric_sum(sky_of(-6).sky_irradiance());
     EXPECT_GT(dusk, 1.2);
     EXPECT_LT(dusk, 6);
+    EXPECT_GT(low_dome, dusk);
 }
 
 TEST(Sky, ColorsOfTheDay) {
@@ -226,13 +228,9 @@ TEST(Sky, ColorsOfTheDay) {
     EXPECT_LT(zenith.x, 0.29);
     EXPECT_LT(zenith.y, 0.30);
     EXPECT_GT(horizon.x, zenith.x + 0.02);
-    double before = 0;
-    for (double elevation : {40.0, 2.0}) {
-        const Vec2d sun = color_of(sky_of(elevation).sun_radiance());
-        EXPECT_GT(sun.x, before) << elevation;
-        before = sun.x;
-    }
-    EXPECT_GT(before, 0.5);
+    const double low_sun = color_of(sky_of(2).sun_radiance()).x;
+    EXPECT_GT(low_sun, color_of(noon.sun_radiance()).x);
+    EXPECT_GT(low_sun, 0.5);
     // Ozone keeps dusk blue; without it the zenith is yellowish then.
     SkySettings s;
     s.elevation = -4;
@@ -249,13 +247,6 @@ TEST(Sky, FollowsItsSettings) {
     EXPECT_GT(color_of(hazy.radiance(up)).x, color_of(clear.radiance(up)).x + 0.01);
     EXPECT_GT(white.radiance(up, 400), 1.1f * clear.radiance(up, 400));
     EXPECT_GT(white.sun_radiance()(400), 0.999f * clear.sun_radiance()(400));
-    double before = 1e9;
-    for (double elevation : {10.0, -6.0}) {
-        const double now = photometric_sum(sky_of(elevation).sky_irradiance());
-        EXPECT_LT(now, before) << elevation;
-        EXPECT_GT(now, 0) << elevation;
-        before = now;
-    }
     // Lambertian ground in the light of sun and sky.
     for (float lambda : {400.0f, 700.0f})
         EXPECT_NEAR(double(white.radiance(down, lambda)),

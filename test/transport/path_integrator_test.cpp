@@ -67,9 +67,9 @@ std::vector<FilmContribution> in_batches(const World& world, const PathIntegrato
 }
 
 // Every path in batches of many sizes against the same path by itself; `lit`: at least so many carry light.
-void expect_same_in_batches(const SceneDescription& description, SamplerKind kind, int lit) {
-    const World world(description);
-    const PathIntegrator integrator(description.integrator, world.camera);
+void expect_same_in_batches(const World& world, const IntegratorSettings& settings, SamplerKind kind,
+                            int lit) {
+    const PathIntegrator integrator(settings, world.camera);
     std::vector<PathStart<SampleStream>> starts;
     std::vector<FilmContribution> one_by_one;
     RayTracer tracer(world.accelerator);
@@ -96,12 +96,15 @@ void expect_same_in_batches(const SceneDescription& description, SamplerKind kin
 }
 
 TEST(PathIntegrator, PathsInBatchesAreTheSameToTheLastBit) {
+    const World world(scene_of(Strategy::mis));
+    IntegratorSettings settings = world.description.integrator;
+    ASSERT_NO_FATAL_FAILURE(expect_same_in_batches(world, settings, SamplerKind::independent, 500));
     for (Strategy strategy : {Strategy::uniform, Strategy::bsdf, Strategy::light, Strategy::mis,
                               Strategy::mis_bsdf, Strategy::mis_light}) {
         SCOPED_TRACE(static_cast<int>(strategy));
-        ASSERT_NO_FATAL_FAILURE(expect_same_in_batches(scene_of(strategy), SamplerKind::sobol, 500));
+        settings.strategy = strategy;
+        ASSERT_NO_FATAL_FAILURE(expect_same_in_batches(world, settings, SamplerKind::sobol, 500));
     }
-    ASSERT_NO_FATAL_FAILURE(expect_same_in_batches(scene_of(Strategy::mis), SamplerKind::independent, 500));
 }
 
 // Triangles at random: with normals that turn against them, without area, emitting, in a mesh of its own for
@@ -134,7 +137,9 @@ SceneDescription odd_triangles(double scale) {
 TEST(PathIntegrator, OddTrianglesInBatchesAreTheSameToTheLastBit) {
     for (const double scale : {1.0, 1e-6, 1e6}) {
         SCOPED_TRACE(scale);
-        ASSERT_NO_FATAL_FAILURE(expect_same_in_batches(odd_triangles(scale), SamplerKind::independent, 500));
+        const World world(odd_triangles(scale));
+        ASSERT_NO_FATAL_FAILURE(
+            expect_same_in_batches(world, world.description.integrator, SamplerKind::independent, 500));
     }
 }
 
@@ -179,8 +184,9 @@ SceneDescription diffuse_of_all_kinds() {
 }
 
 TEST(PathIntegrator, DiffuseSurfacesOfAllKindsInBatchesAreTheSameToTheLastBit) {
+    const World world(diffuse_of_all_kinds());
     for (const SamplerKind kind : {SamplerKind::independent, SamplerKind::sobol})
-        ASSERT_NO_FATAL_FAILURE(expect_same_in_batches(diffuse_of_all_kinds(), kind, 500));
+        ASSERT_NO_FATAL_FAILURE(expect_same_in_batches(world, world.description.integrator, kind, 500));
 }
 
 // A point of primary sample space: numbers that are kept, and drawn from another stream when first asked for.

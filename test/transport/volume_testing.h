@@ -139,9 +139,9 @@ void expect_radiance(const SpectralMean& mean, const Truth& truth, const std::st
 
 // All wavelengths together, over the pixels of the scene's camera.
 template <typename Integrator>
-RunningMoments camera_mean(const SceneDescription& description, int samples, std::uint64_t seed) {
-    const VolumeWorld world(description);
-    const Integrator integrator(world.description.integrator, world.camera);
+RunningMoments camera_mean(const VolumeWorld& world, const IntegratorSettings& settings, int samples,
+                           std::uint64_t seed) {
+    const Integrator integrator(settings, world.camera);
     RayTracer tracer(world.accelerator);
     RunningMoments mean;
     for (int i = 0; i < samples; ++i) {
@@ -153,6 +153,11 @@ RunningMoments camera_mean(const SceneDescription& description, int samples, std
         mean.add(double(average(safe_div(c.radiance, c.lambda.pdf))));
     }
     return mean;
+}
+template <typename Integrator>
+RunningMoments camera_mean(const SceneDescription& description, int samples, std::uint64_t seed) {
+    const VolumeWorld world(description);
+    return camera_mean<Integrator>(world, world.description.integrator, samples, seed);
 }
 
 inline void expect_same_mean(const RunningMoments& a, const RunningMoments& b, const std::string& what) {

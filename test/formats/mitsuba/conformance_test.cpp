@@ -1,9 +1,15 @@
 // The scenes of Mitsuba's documentation and tests load, or say which plugin is not supported.
 #include "test/formats/mitsuba/shared_scenes.h"
+#include "test/sanitized.h"
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
+#include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "montelux/formats/load_scene.h"
 #include "montelux/mc/math/error.h"
@@ -33,7 +39,32 @@ class MitsubaConformance : public ::testing::Test {
         options.definitions["spp"] = "16";
         return load(path, options);
     }
+
+    struct Counts {
+        int loaded = 0, refused = 0;
+    };
+    Counts expect_loaded_or_refused(const std::vector<std::filesystem::path>& paths) {
+        Counts counts;
+        for (const std::filesystem::path& path : paths) {
+            try {
+                const SceneDescription d = load_with_samples(path);
+                EXPECT_FALSE(d.scene.shapes.empty()) << path;
+                EXPECT_TRUE(d.has_camera) << path;
+                ++counts.loaded;
+            } catch (const Error& e) {
+                const std::string message = e.what();
+                const bool explained = message.find("is not supported") != std::string::npos ||
+                                       message.find("there is no file") != std::string::npos;
+                EXPECT_TRUE(explained) << message;
+                ++counts.refused;
+            }
+        }
+        RecordProperty("loaded", counts.loaded);
+        RecordProperty("refused", counts.refused);
+        return counts;
+    }
 };
+class MitsubaConformanceSlowTest : public MitsubaConformance {};
 
 // Parts of scenes, which others include.
 bool is_part(const std::filesystem::path& path) {
@@ -41,28 +72,44 @@ bool is_part(const std::filesystem::path& path) {
     return folders.contains(path.parent_path().filename().string());
 }
 
-TEST_F(MitsubaConformance, AllLoadOrSayWhyNot) {
-    int loaded = 0, refused = 0;
+std::vector<std::filesystem::path> all_scenes() {
+    std::vector<std::filesystem::path> paths;
     for (const char* folder : {"docs/scenes", "scenes", "tests"})
-        for (const auto& entry : std::filesystem::recursive_directory_iterator(mitsuba_scenes() / folder)) {
-            if (entry.path().extension() != ".xml" || is_part(entry.path())) continue;
-            try {
-                const SceneDescription d = load_with_samples(entry.path());
-                EXPECT_FALSE(d.scene.shapes.empty()) << entry.path();
-                EXPECT_TRUE(d.has_camera) << entry.path();
-                ++loaded;
-            } catch (const Error& e) {
-                const std::string message = e.what();
-                const bool explained = message.find("is not supported") != std::string::npos ||
-                                       message.find("there is no file") != std::string::npos;
-                EXPECT_TRUE(explained) << message;
-                ++refused;
-            }
-        }
-    RecordProperty("loaded", loaded);
-    RecordProperty("refused", refused);
-    EXPECT_GT(loaded, 90);
-    EXPECT_LT(refused, 30);
+        for (const auto& entry : std::filesystem::recursive_directory_iterator(mitsuba_scenes() / folder))
+            if (entry.path().extension() == ".xml" && !is_part(entry.path())) paths.push_back(entry.path());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+// Scenes that name a plugin, a parameter or a file that none before them does.
+std::vector<std::filesystem::path> scenes_with_new_words() {
+    static const std::regex attribute("(?:type|name|filename)=\"([^\"]*)\"");
+    std::set<std::string> known;
+    std::vector<std::filesystem::path> paths;
+    for (const std::filesystem::path& path : all_scenes()) {
+        std::ifstream file(path);
+        const std::string text(std::istreambuf_iterator<char>(file), {});
+        const std::size_t before = known.size();
+        for (std::sregex_iterator word(text.begin(), text.end(), attribute), end; word != end; ++word)
+            known.insert((*word)[1]);
+        if (known.size() > before) paths.push_back(path);
+    }
+    return paths;
+}
+
+TEST_F(MitsubaConformance, ScenesWithNewWordsLoadOrSayWhyNot) {
+    const std::vector<std::filesystem::path> scenes = scenes_with_new_words();
+    std::vector<std::filesystem::path> some;
+    for (std::size_t i = 0; i < scenes.size(); i += under_sanitizers ? 4 : 1) some.push_back(scenes[i]);
+    const Counts counts = expect_loaded_or_refused(some);
+    EXPECT_GT(counts.loaded, under_sanitizers ? 8 : 35);
+    EXPECT_LT(counts.refused, 15);
+}
+
+TEST_F(MitsubaConformanceSlowTest, AllLoadOrSayWhyNot) {
+    const Counts counts = expect_loaded_or_refused(all_scenes());
+    EXPECT_GT(counts.loaded, 90);
+    EXPECT_LT(counts.refused, 30);
 }
 
 TEST_F(MitsubaConformance, Shapes) {

@@ -1,5 +1,6 @@
 // Any scene file yields a scene or an error message.
 #include "test/formats/pbrt/parse.h"
+#include "test/sanitized.h"
 #include <gtest/gtest.h>
 #include <random>
 #include <string>
@@ -71,7 +72,7 @@ TEST(PbrtMutations, TheSceneItselfIsRight) {
 
 TEST(PbrtMutations, Bytes) {
     std::mt19937 random(5);
-    for (int n = 0; n < 10000; ++n) {
+    for (int n = 0; n < (under_sanitizers ? 3000 : 10000); ++n) {
         std::string text = scene;
         for (unsigned k = 0; k <= random() % 3; ++k) {
             std::size_t at = random() % text.size();
@@ -105,7 +106,7 @@ TEST(PbrtMutations, Words) {
     std::mt19937 random(6);
     const std::string odd[] = {"-1 ",    "0 ",    "1e38 ", "-1e38 ", "2147483647 ",
                                "1e-45 ", "\"\" ", "[ ] ",  "99999 ", "x "};
-    for (int n = 0; n < 10000; ++n) {
+    for (int n = 0; n < (under_sanitizers ? 3000 : 10000); ++n) {
         std::vector<std::string> changed = words;
         for (unsigned k = 0; k <= random() % 2; ++k) {
             std::size_t at = random() % changed.size();

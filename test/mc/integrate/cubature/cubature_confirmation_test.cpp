@@ -107,13 +107,12 @@ TEST(CubatureConfirmation, IsAskedForAgainWhenThereAreManyMoreRegions) {
     EXPECT_TRUE(confirm(strips(64)));
 }
 
-// Of the bank of hard integrals (bench/hard), each with a singular line elsewhere: where it is close to a face, all
-// regions along it have errors that are too small. Without the confirmation 71 of these 6000 are more than four errors
-// off, with it 24: such a line shows in few of the regions that are halved.
-TEST(CubatureConfirmation, FindsErrorsThatAreTooSmallInManyRegions) {
+// Integrals of the hard bank (bench/hard), each with a singular line elsewhere: where it is close to a face, all
+// regions along it have errors that are too small. The number of those that are more than four errors off.
+int silent_claims(std::uint64_t seeds) {
     int silent = 0;
-    for (std::uint64_t seed = 0; seed < 6000; ++seed) {
-        const double at = 0.20003 + 0.0001 * static_cast<double>(seed);
+    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
+        const double at = 0.20003 + 0.6 * static_cast<double>(seed) / static_cast<double>(seeds);
         const Integrand logarithm(
             [=](std::span<const double> x) { return -std::log(std::abs(x[0] - at)) * 2 * x[1]; });
         const double exact = 1 - at * std::log(at) - (1 - at) * std::log(1 - at);
@@ -122,7 +121,14 @@ TEST(CubatureConfirmation, FindsErrorsThatAreTooSmallInManyRegions) {
                       {.relative_error = 1e-4, .evaluations = 3'000'000}, {.seed = seed, .threads = 1});
         silent += r.converged() && std::abs(r.value[0] - exact) > 4 * r.standard_error[0];
     }
-    EXPECT_LE(silent, 40);
+    return silent;
+}
+
+TEST(CubatureConfirmation, FindsErrorsThatAreTooSmallInManyRegions) { EXPECT_LE(silent_claims(1500), 10); }
+
+// Without the confirmation 71, with it 24: such a line shows in few of the regions that are halved.
+TEST(CubatureConfirmationSlowTest, FindsErrorsThatAreTooSmallInManyRegions) {
+    EXPECT_LE(silent_claims(6000), 40);
 }
 
 } // namespace
