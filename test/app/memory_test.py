@@ -4,9 +4,9 @@ import re
 
 from program import ProgramTest, write
 
-FEW, MANY = 16, 8192
-SIZE = 1024  # pixels of the sky; at this size the page count fluctuates by less than the tolerance
-TOLERANCE = 1.03
+FEW, MANY = 16, 16384
+SIZE = 2048  # pixels of the sky; at this size the page count fluctuates by less than the tolerance
+TOLERANCE = 1.01
 
 
 class Memory(ProgramTest):

@@ -36,14 +36,14 @@ TEST(Emission, TheMeanIsTheFlux) {
     for_each_part([](const Case& c, const LightContext& context, Index part) {
         TestUniforms uniforms(part + 3);
         RunningMoments m;
-        for (int i = 0; i < 25000; ++i) {
+        for (int i = 0; i < 100000; ++i) {
             const Vec2f u = uniforms.next_2f(), v = uniforms.next_2f();
             const auto s = sample_le(context, part, u, v, wavelengths);
             m.add(s ? double(s->radiance[0] * s->cosine / (s->pdf_position * s->pdf_direction)) : 0);
         }
         const double flux = c.flux[part];
         EXPECT_NEAR(m.mean(), flux, 5.5 * m.standard_error() + c.tolerance * flux);
-        EXPECT_LT(m.standard_error(), 0.04 * flux);
+        EXPECT_LT(m.standard_error(), 0.02 * flux);
     });
 }
 
@@ -158,11 +158,11 @@ TEST(IncidentLight, OfInfiniteLightsFollowsItsDensity) {
         };
         auto pdf = [&](Vec3f w) { return pdf_li(context, from, {.wi = w, .part = part}); };
         ChiSquaredOptions options;
-        options.samples = 25000;
-        options.cells_x = options.cells_y = 16;
+        options.samples = 100000;
+        options.cells_x = options.cells_y = 32;
         const TestResult r = spherical_chi_squared_test(sample, pdf, options);
         EXPECT_TRUE(r.passes(significance)) << r.description;
-        EXPECT_GT(samples, 10000);
+        EXPECT_GT(samples, 40000);
         EXPECT_LE(differing, samples / 500); // at edges of texels and of cones
     });
 }

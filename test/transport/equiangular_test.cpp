@@ -244,7 +244,7 @@ VolumeScene hall_of_lamps(Fog fog = Fog::homogeneous) {
 }
 
 RunningMoments hall_mean(VolumeScene& b, Strategy strategy, Heuristic heuristic, bool equiangular,
-                         std::uint64_t seed, int samples = 20000) {
+                         std::uint64_t seed, int samples = 60000) {
     b.description.integrator.strategy = strategy;
     b.description.integrator.heuristic = heuristic;
     b.description.integrator.equiangular = equiangular;
@@ -258,7 +258,7 @@ TEST(Equiangular, StrategiesAgree) {
     expect_same_mean(mis, hall_mean(b, Strategy::mis, Heuristic::balance, true, 3), "balance");
     expect_same_mean(mis, hall_mean(b, Strategy::light, Heuristic::power, true, 4), "light");
     expect_same_mean(mis, hall_mean(b, Strategy::light, Heuristic::balance, true, 5), "light, balance");
-    expect_same_mean(mis, hall_mean(b, Strategy::bsdf, Heuristic::power, true, 6, 80000), "bsdf");
+    expect_same_mean(mis, hall_mean(b, Strategy::bsdf, Heuristic::power, true, 6, 240000), "bsdf");
     EXPECT_NEAR(hall_mean(b, Strategy::mis_bsdf, Heuristic::power, true, 1).mean() +
                     hall_mean(b, Strategy::mis_light, Heuristic::power, true, 1).mean(),
                 mis.mean(), 1e-3 * mis.mean());
@@ -280,7 +280,7 @@ TEST(Equiangular, SurfacesLitAfterScatteringKeepTheirLight) {
     b.description.integrator.max_depth = 2;
     for (const Strategy strategy : {Strategy::mis, Strategy::light})
         expect_same_mean(hall_mean(b, strategy, Heuristic::power, true, 1),
-                         hall_mean(b, strategy, Heuristic::power, false, 2, 40000), "surface");
+                         hall_mean(b, strategy, Heuristic::power, false, 2, 120000), "surface");
 }
 
 // What the densities of the strategies say about one another: with the balance heuristic a sample of strategy S

@@ -101,7 +101,7 @@ TEST(ExtremeValues, InfiniteVarianceGivesAWarning) {
     for (const char* name :
          {"basic", "quasi", "stratified", "recursive", "vegas", "vegas_sobol", "adaptive"}) {
         int infinite = 0, finite = 0;
-        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+        for (std::uint64_t seed = 1; seed <= 10; ++seed) {
             const Budget budget{.evaluations = 60'000};
             const IntegrationOptions options{.seed = seed, .threads = 1};
             infinite +=
@@ -110,7 +110,7 @@ TEST(ExtremeValues, InfiniteVarianceGivesAWarning) {
         }
         // Few strata reveal less.
         const bool strata = std::string(name) == "stratified" || std::string(name) == "recursive";
-        EXPECT_GE(infinite, strata ? 1 : 3) << name;
+        EXPECT_GE(infinite, strata ? 2 : 6) << name;
         EXPECT_EQ(finite, 0) << name;
     }
 }
