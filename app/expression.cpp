@@ -237,6 +237,16 @@ std::vector<std::vector<double>> Formulas::landmarks() const {
     });
 }
 
+std::vector<Integrand::BatchFunction> Formulas::guides() const {
+    std::vector<Integrand::BatchFunction> all;
+    for (const std::string& text : formula_guides(pool_->texts, pool_->variables)) try {
+            all.emplace_back(Formulas({text}, pool_->variables, "", pool_->given));
+        } catch (const UsageError&) { // a part that is no formula by itself
+            continue;
+        }
+    return all;
+}
+
 void Formulas::operator()(const PointBatch& x, ValueBatch y) const {
     auto lease = pool_->take();
     for (std::size_t i = 0; i < x.count(); ++i) {

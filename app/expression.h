@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "montelux/mc/integrate/points.h"
+#include "montelux/mc/integrate/integrand.h"
 
 namespace montelux::app {
 
@@ -29,6 +29,8 @@ class Formulas {
     const std::vector<std::string>& texts() const;
     // Points near which the formulas may have features (formula_landmarks).
     std::vector<std::vector<double>> landmarks() const;
+    // Functions that are zero near such points (formula_guides).
+    std::vector<Integrand::BatchFunction> guides() const;
     // Coordinate d of a point is the value of variable d.
     void operator()(const PointBatch& x, ValueBatch y) const;
     // The value of the first formula; one variable.

@@ -12,8 +12,9 @@
 namespace montelux::app {
 namespace {
 
-constexpr std::size_t most_roots = 8;        // of the forms of one bracket
-constexpr std::size_t most_forms = 128;      // of a formula: a look takes few points, roots cost their square
+constexpr std::size_t most_roots = 8;   // of the forms of one bracket
+constexpr std::size_t most_forms = 128; // of a formula: a look takes few points, roots cost their square
+constexpr std::size_t most_guides = 12;
 constexpr std::size_t most_of_operand = 256; // characters
 
 struct Token {
@@ -241,7 +242,67 @@ class Reader {
     std::vector<Token> tokens_;
 };
 
+// Whether a variable stands in a text, and something else beside it.
+bool is_guide(std::string_view text, const std::vector<std::string>& variables) {
+    bool found = false;
+    for (std::size_t i = 0; i < text.size();) {
+        const std::size_t length = name_length(text.substr(i));
+        found =
+            found || (length > 0 && std::ranges::find(variables, text.substr(i, length)) != variables.end());
+        i += std::max<std::size_t>(1, length);
+    }
+    return found && std::ranges::find(variables, text) == variables.end();
+}
+
+// The parts of what stands in one bracket, without the brackets inside of it: between commas, && and the like.
+class Parts {
+  public:
+    explicit Parts(std::size_t begin) : begin_(begin) {}
+
+    // Reads the character at `i`; `end`: of the text or the bracket.
+    void read(std::string_view text, std::size_t i, bool end, const std::function<void(std::string)>& add) {
+        const char c = end ? ',' : text[i];
+        if (c == '<' || c == '>' || c == '=' || c == '!') {
+            if (!compared_) left_ = text.substr(begin_, i - begin_);
+            compared_ = true;
+            begin_ = i + 1;
+        }
+        if (c != ',' && c != '?' && c != ':' && c != '&' && c != '|') return;
+        const std::string part(text.substr(begin_, i - begin_));
+        add(compared_ ? "(" + std::string(left_) + ")-(" + part + ")" : part);
+        compared_ = false;
+        begin_ = i + 1;
+    }
+    bool compared() const { return compared_; }
+
+  private:
+    std::size_t begin_;
+    std::string_view left_;
+    bool compared_ = false;
+};
+
 } // namespace
+
+std::vector<std::string> formula_guides(const std::vector<std::string>& texts,
+                                        const std::vector<std::string>& variables) {
+    std::vector<std::string> guides;
+    for (const std::string& text : texts) {
+        std::vector<Parts> open{Parts(0)};
+        for (std::size_t i = 0; i <= text.size(); ++i) {
+            const bool end = i == text.size() || text[i] == ')';
+            const bool whole = open.size() == 1 && !open.back().compared();
+            open.back().read(text, i, end, [&](const std::string& part) {
+                if (!whole && is_guide(part, variables) && std::ranges::find(guides, part) == guides.end())
+                    guides.push_back(part);
+            });
+            if (end && open.size() > 1) open.pop_back();
+            if (i < text.size() && text[i] == '(') open.emplace_back(i + 1);
+        }
+    }
+    std::ranges::stable_sort(guides, std::greater{}, &std::string::size);
+    if (guides.size() > most_guides) guides.resize(most_guides);
+    return guides;
+}
 
 std::size_t name_length(std::string_view text) {
     std::size_t length = 0;

@@ -40,9 +40,16 @@ struct NamedIntegrand {
     Integrand::BatchFunction function;
     std::vector<std::string> names;
     std::shared_ptr<const DeviceFunction> compiled = nullptr; // on a device; null: there is none
-    std::vector<std::vector<double>> landmarks = {};          // of the formulas (formula_landmarks)
+    std::vector<std::vector<double>> landmarks = {};          // of the formulas (formula_landmarks),
+    std::vector<Integrand::BatchFunction> guides = {};        // (formula_guides)
 
     int count() const { return static_cast<int>(names.size()); }
+    // An integrand with another function, such as this one's on several machines.
+    Integrand integrand(Integrand::BatchFunction f) const {
+        return hinted(Integrand::batch(std::move(f), count()));
+    }
+    // With the landmarks and guides.
+    Integrand hinted(const Integrand& f) const { return f.with_landmarks(landmarks).with_guides(guides); }
 };
 
 // Throws Error where a density is zero and the integrand is not, since the integral would then be silently

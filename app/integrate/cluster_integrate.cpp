@@ -50,9 +50,7 @@ SharedIntegration::SharedIntegration(const IntegrationTask& task, bool alone) {
 }
 
 void SharedIntegration::integrate(const IntegrationTask& task, const BatchFunction& f, const Work& work) {
-    const int components = task.integrand.count();
-    if (!shared_)
-        return work(Integrand::batch(f, components).with_landmarks(task.integrand.landmarks), task.options);
+    if (!shared_) return work(task.integrand.integrand(f), task.options);
 
     IntegrationOptions options = task.options;
     options.threads = shared_->threads();
@@ -60,7 +58,7 @@ void SharedIntegration::integrate(const IntegrationTask& task, const BatchFuncti
         shared_->lead(
             [&] {
                 auto shared = [this](const PointBatch& x, ValueBatch y) { (*shared_)(x, y); };
-                work(Integrand::batch(shared, components), options);
+                work(task.integrand.integrand(shared), options);
             },
             request_cancel);
     } catch (const std::exception& e) {

@@ -119,14 +119,12 @@ int run(const IntegrateOptions& o) {
             logarithm.relative = integrate(f, task.domain, task.method, task.budget, options);
     };
     if (task.integrand.compiled)
-        work(Integrand::compiled(task.integrand.compiled).with_landmarks(task.integrand.landmarks),
-             task.options);
+        work(task.integrand.hinted(Integrand::compiled(task.integrand.compiled)), task.options);
     else
 #ifdef MONTELUX_WITH_RENDER
         shared.integrate(task, evaluate, work);
 #else
-        work(Integrand::batch(evaluate, task.integrand.count()).with_landmarks(task.integrand.landmarks),
-             task.options);
+        work(task.integrand.integrand(evaluate), task.options);
 #endif
     line.finish();
     const IntegrationResult& result = logarithm.relative;

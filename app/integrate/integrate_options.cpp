@@ -158,11 +158,13 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
         if (text.starts_with(" -")) text.erase(0, 1); // the blank of with_negative_formulas
     Formulas parsed(formulas, variables, "", constants);
     std::vector<std::vector<double>> landmarks = parsed.landmarks();
+    std::vector<Integrand::BatchFunction> guides = parsed.guides();
     NamedIntegrand made =
         o.device.empty()
             ? NamedIntegrand{std::move(parsed), formulas}
             : on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
     made.landmarks = std::move(landmarks);
+    made.guides = std::move(guides);
     return made;
 }
 

@@ -69,3 +69,27 @@ class HardIntegrals(ProgramTest):
 
     def test_time_limit_holds_where_an_integrand_takes_millions_of_regions(self):
         self.outcome(f"integrate {RING} --over x,y=-1.3:1.3 --relative-error 1e-12 --time 2 --quiet", seconds=10)
+
+    def test_features_where_a_bracket_of_the_formula_is_zero(self):
+        for truth, line in [
+            (2.0943951023931953e-7, "exp(-1e7*((x^2-y)^2+(y^2-2*x)^2)) --over x,y=-5:5"),
+            (12.796371465, "abs(hypot(x,y)-0.7)<1e-5?1e5:1 --over x,y=-1:1"),
+            (0.11192339274, "exp(-((hypot(x,y)-1)/0.01)^2)+exp(-((hypot(x-1,y-1)-0.1)/0.0005)^2) --over x,y=-2:2"),
+            (0.33300882, "exp(20*(x-1))+300*exp(1e5*(0.6*y-0.8*x-1)) --domain sphere --over x,y,z"),
+            (1.2566371e-5, "exp(1e6*(abs(z)-1)) --domain sphere --over x,y,z"),
+            (1.55787364, "exp(-(y-sqrt(x))^2)/(1+x)^2 --over x,y=0:inf"),
+        ]:
+            for seed in 1, 2, 3:
+                self.honest(truth, f"{line} --relative-error 1e-3 --time 5 --seed {seed}")
+
+    def test_divergence_along_curves(self):
+        for line in (
+            "abs(x-y)^-1+1e6 --over x,y=0:1",
+            "exp(-(y-sqrt(x))^2)/(1+x) --over x,y=0:inf",
+            "exp(-(y-x^2)^2)/(1+abs(x)) --over x,y=-inf:inf",
+            "exp(-(x-2*y)^2) --over x,y=-inf:inf",
+        ):
+            for seed in 1, 2, 3:
+                with self.subTest(line, seed=seed):
+                    outcome, result = self.result(f"{line} --relative-error 1e-3 --time 5 --seed {seed}")
+                    self.assertEqual((outcome.code, result["stop"]), (3, "diverges"), outcome)

@@ -88,6 +88,7 @@ class Integrand {
         Integrand other(components_, std::move(f));
         other.dimensions_ = dimensions_;
         other.landmarks_ = landmarks_;
+        other.guides_ = guides_;
         return other;
     }
     // Returns this integrand with landmarks: points near which it may have features, such as the numbers of a formula. Each
@@ -98,6 +99,14 @@ class Integrand {
         return other;
     }
     std::span<const std::vector<double>> landmarks() const { return landmarks_; }
+    // Returns this integrand with guides: functions of the same variables, with one component, that are zero where it may
+    // have features, such as what stands in the brackets of a formula.
+    Integrand with_guides(std::vector<BatchFunction> guides) const {
+        Integrand other = *this;
+        other.guides_ = std::move(guides);
+        return other;
+    }
+    std::span<const BatchFunction> guides() const { return guides_; }
     const OnDevice& on_device() const { return on_device_; }
     // The same integrand, evaluated in this way on a device.
     Integrand with_device(OnDevice device) const {
@@ -124,6 +133,7 @@ class Integrand {
     BatchFunction function_;
     OnDevice on_device_{};
     std::vector<std::vector<double>> landmarks_;
+    std::vector<BatchFunction> guides_;
     int dimensions_ = 0;
     int components_;
 };

@@ -31,7 +31,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t default_evaluations = 1'000'000;
 constexpr std::uint64_t no_limit = ~std::uint64_t{0};
-constexpr std::uint64_t most_of_look = 1024;  // evaluations,
+constexpr std::uint64_t most_of_look = 2048;  // evaluations,
 constexpr std::uint64_t share_of_look = 16;   // and one over the largest share of the limit
 constexpr std::uint64_t least_for_look = 512; // smaller limits leave no room for one
 // Evaluations after which the largest values are examined, and the factor of them until the next time.
@@ -143,12 +143,12 @@ class Run {
         if (has_time()) interruption_.set_deadline(deadline());
         try {
             for (int i = 0; i < most_looks; ++i) {
-                evidence_.look(f_.landmarks(), std::min(most_of_look, limit_ / share_of_look));
+                evidence_.look(f_, std::min(most_of_look, limit_ / share_of_look));
                 const std::vector<double> units = scale_.exponents();
                 const bool moved = scale_.adjust();
                 if (i == 0 && scale_.form() == IntegrandForm::value && follows_spikes(units)) {
                     scale_.ignore_spikes();
-                    evidence_.look(f_.landmarks(), std::min(most_of_look, limit_ / share_of_look));
+                    evidence_.look(f_, std::min(most_of_look, limit_ / share_of_look));
                     scale_.ignore_spikes();
                     break;
                 }

@@ -15,8 +15,9 @@ namespace {
 constexpr double nowhere = -std::numeric_limits<double>::max();
 constexpr double least_excess = 3; // of log h above what known modes explain, for another search
 constexpr double first_difference = 0.02, close_difference = 5e-4,
-                 least_difference = 1e-8; // of coordinates, in widths of the cube
-constexpr double longest_step = 0.3;      // of a coordinate
+                 least_difference = 1e-8;                    // of coordinates, in widths of the cube
+constexpr double longest_step = 0.3;                         // of a coordinate
+constexpr double of_last_step = 0.01, least_at_pole = 1e-13; // differences on the way to a pole
 // Variables up to which a step takes the whole matrix of curvatures.
 constexpr std::size_t whole_curvature = 6;
 constexpr std::array survey_scales{3.0, 6.0, 12.0, 24.0}; // standard deviations around a mode
@@ -27,8 +28,9 @@ constexpr double least_coordinate = 1e-6, least_of_extent = 1e-3;
 
 class Climber {
   public:
-    Climber(const DensityFunction& h, int dimensions, std::uint64_t budget)
-        : h_(h), n_(static_cast<std::size_t>(dimensions)), budget_(budget) {}
+    // `to_poles`: where h is infinite log h is convex, and differences must become smaller with the steps.
+    Climber(const DensityFunction& h, int dimensions, std::uint64_t budget, bool to_poles = false)
+        : h_(h), n_(static_cast<std::size_t>(dimensions)), budget_(budget), to_poles_(to_poles) {}
 
     std::uint64_t left() const { return budget_; }
 
@@ -53,7 +55,7 @@ class Climber {
     // the first differences.
     double climb(std::vector<double>& x, double width = first_difference, double least = least_coordinate) {
         double top = log_at({x})[0];
-        const double least_width = std::min(least_difference, 1e-3 * width);
+        const double least_width = to_poles_ ? least_at_pole : std::min(least_difference, 1e-3 * width);
         constexpr std::array lengths{1.0, 0.4, 0.16, 0.064, 0.026, 0.01};
         for (int step = 0; step < 60 && budget_ >= 2 * n_ + lengths.size(); ++step) {
             std::vector<std::vector<double>> around;
@@ -74,29 +76,56 @@ class Climber {
             }
             double expected = 0;
             const std::vector<double> direction = uphill(x, top, h, f, expected);
-            if (!(expected > 1e-3)) break;
+            if (!(expected > 1e-3)) {
+                if (!to_poles_) break;
+                // Differences may reach beyond a pole, where the slope turns.
+                width *= 0.3;
+                if (width < least_width) break;
+                continue;
+            }
             std::vector<std::vector<double>> tries;
-            for (double length : lengths) {
+            const auto add_try = [&](const std::vector<double>& along, double length) {
                 tries.push_back(x);
                 for (std::size_t d = 0; d < n_; ++d)
-                    tries.back()[d] = std::clamp(x[d] + length * direction[d], least, 1 - least);
-            }
+                    tries.back()[d] = std::clamp(x[d] + length * along[d], least, 1 - least);
+            };
+            if (to_poles_) // one of these is exact where h is infinite on a plane, the others at a point
+                for (double length : {1.0, 2.0}) add_try(step_to_pole(h, f), length);
+            for (double length : lengths) add_try(direction, length);
             const double before = top;
-            for (auto& point : tries) { // one at a time: the first is nearly always the best
-                const double f_try = log_at({point})[0];
+            const std::vector<double> from = x;
+            const std::size_t compared = to_poles_ ? 3 : 1;
+            for (std::size_t i = 0; i < tries.size(); ++i) { // the first is nearly always the best
+                if (i >= compared && top > before) break;
+                const double f_try = log_at({tries[i]})[0];
                 if (!(f_try > top)) continue;
                 top = f_try;
-                x = point;
-                break;
+                x = tries[i];
             }
-            if (top > before) {
-                if (top - before < 1e-3) break;
-            } else {
+            if (to_poles_ && top > before) {
+                double moved = 0;
+                for (std::size_t d = 0; d < n_; ++d) moved = std::max(moved, std::abs(x[d] - from[d]));
+                width = std::min(width, std::max(least_width, of_last_step * moved));
+            }
+            if (top - before < 1e-3) {
+                if (top > before && !to_poles_) break;
                 width *= 0.3;
                 if (width < least_width) break;
             }
         }
         return top;
+    }
+
+    // The step up the slope at whose end 1/h is zero, if it falls as steadily as here: exact where h is infinite on a plane.
+    std::vector<double> step_to_pole(const std::vector<double>& h, const std::vector<double>& f) const {
+        std::vector<double> step(n_);
+        double squares = 0;
+        for (std::size_t d = 0; d < n_; ++d) {
+            step[d] = (f[2 * d] - f[2 * d + 1]) / (2 * h[d]);
+            squares += step[d] * step[d];
+        }
+        for (double& s : step) s = squares > 0 ? s / squares : 0;
+        return step;
     }
 
     // A step uphill from the values f around x at differences h, and the rise that its slope promises. In few variables by
@@ -139,9 +168,9 @@ class Climber {
         } else {
             for (std::size_t d = 0; d < n_; ++d) {
                 const double c = curvature[d * n_ + d];
-                direction[d] = std::clamp(c < 0             ? -gradient[d] / c
-                                          : gradient[d] > 0 ? 0.1
-                                                            : -0.1,
+                direction[d] = std::clamp(c < 0 || to_poles_ ? gradient[d] / std::abs(c)
+                                          : gradient[d] > 0  ? 0.1
+                                                             : -0.1,
                                           -longest_step, longest_step);
             }
         }
@@ -253,6 +282,7 @@ class Climber {
     const DensityFunction& h_;
     std::size_t n_;
     std::uint64_t budget_;
+    bool to_poles_;
 };
 
 // The point farthest from all known modes, among those where h was seen.
@@ -280,6 +310,11 @@ std::optional<Gaussian> diagonal_gaussian(const std::vector<double>& mean,
 }
 
 } // namespace
+
+double climb_to_pole(const DensityFunction& h, std::vector<double>& x, std::uint64_t max_evaluations) {
+    return Climber(h, static_cast<int>(x.size()), max_evaluations, true)
+        .climb(x, first_difference, least_at_pole);
+}
 
 std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
                                  std::span<const double> h_at_x, const ModeSearch& settings) {

@@ -26,6 +26,9 @@ struct ModeSearch {
 // h at a batch of points.
 using DensityFunction = std::function<void(const PointBatch&, std::span<double>)>;
 
+// Moves x of the unit cube uphill on log h to a place where h is infinite, or to a top; returns log h there.
+double climb_to_pole(const DensityFunction& h, std::vector<double>& x, std::uint64_t max_evaluations);
+
 // Climbs log h from points where h is known, each time from the point where h most exceeds the Gaussians of
 // the modes found so far, so that a narrow peak among wide ones is found: log h has a slope even where h is
 // astronomically small. Each mode gives the Gaussian of its curvature (Laplace's approximation).

@@ -52,8 +52,8 @@ Evidence::Evidence(Evaluator& evaluator, std::uint64_t seed)
 
 Evidence::~Evidence() { evaluator_.keep_largest(nullptr); }
 
-void Evidence::look(std::span<const std::vector<double>> landmarks, std::uint64_t most_evaluations) {
-    look_ = first_look(evaluator_, {landmarks, most_evaluations, seed_});
+void Evidence::look(const Integrand& f, std::uint64_t most_evaluations) {
+    look_ = first_look(evaluator_, {f.landmarks(), f.guides(), most_evaluations, seed_});
     evaluations_ += look_.evaluations;
     divergence_ = look_.divergence;
     largest_.clear();

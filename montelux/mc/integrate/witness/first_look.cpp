@@ -10,6 +10,8 @@
 #include <numeric>
 #include <utility>
 
+#include "montelux/mc/integrate/infinity.h"
+#include "montelux/mc/integrate/witness/guide_zeros.h"
 #include "montelux/mc/integrate/witness/ladder_path.h"
 #include "montelux/mc/integrate/witness/peak.h"
 #include "montelux/mc/integrate/witness/raw_values.h"
@@ -27,13 +29,17 @@ constexpr double constant = 0.9;      // or of the innermost one beside the one 
 constexpr double matters = 1e-3;      // of the greatest mass of a shell: a difference between two
 constexpr double outstanding = 16;    // times the median of the look
 constexpr std::size_t most_peaks = 3, more_corners = 8;
-constexpr int most_climbed = 8; // variables in which peaks are climbed and measured
+constexpr std::size_t most_followed = 3; // variables in which ridges are followed to the ends
+constexpr double same_root = 0.05;       // of the distance between two
+constexpr double least_followed = 1e-4;  // of a ridge's mass
+constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 
 class Look {
   public:
     Look(const Evaluator& evaluator, const LookSettings& settings)
         : raw_(evaluator), settings_(settings), n_(static_cast<std::size_t>(evaluator.dimensions())),
-          paths_(evaluator.domain(), n_, settings.landmarks, settings.seed),
+          zeros_(guide_zeros(settings.guides, evaluator.domain(), settings.seed)),
+          paths_(evaluator.domain(), n_, settings.landmarks, places_of(zeros_), settings.seed),
           largest_(static_cast<std::size_t>(evaluator.components()), 0.0) {}
 
     FirstLook operator()() {
@@ -42,7 +48,8 @@ class Look {
         walk(paths);
         if (n_ > 1 && !look_.slow.empty()) walk(corner_paths());
         if (n_ > 1) {
-            find_peaks(deep_); // while evaluations are left to climb them
+            find_ridges(); // while evaluations are left to measure them
+            find_peaks(deep_);
             for (std::size_t d = 0; d < n_ && affordable(4 * ladder.size()); ++d) {
                 // Through a generic point, where no other variable is near a pole of its own; then through the
                 // greatest value, where masses along a line say nothing of the integral.
@@ -364,6 +371,13 @@ class Look {
             if (largest_[c] > 0) sum += std::abs(row[c]) / largest_[c];
         return std::isfinite(sum) ? sum : 0;
     }
+    double median_size() const {
+        std::vector<double> sizes;
+        for (std::size_t i : ordinary_) sizes.push_back(size(look_.witnesses[i].value));
+        if (sizes.empty()) return 0;
+        std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
+        return sizes[sizes.size() / 2];
+    }
     const Witness* best() const {
         const auto top =
             std::ranges::max_element(look_.witnesses, {}, [&](const Witness& w) { return size(w.value); });
@@ -373,16 +387,13 @@ class Look {
     // Climbs from those of these witnesses that stand out.
     void find_peaks(const std::vector<std::size_t>& from) {
         if (ordinary_.empty() || n_ > most_climbed) return;
-        std::vector<double> sizes;
-        for (std::size_t i : ordinary_) sizes.push_back(size(look_.witnesses[i].value));
-        std::ranges::nth_element(sizes, sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2));
-        const double median = sizes[sizes.size() / 2];
+        const double median = median_size();
         std::vector<Witness> starts;
         starts.reserve(from.size());
         for (std::size_t i : from) starts.push_back(look_.witnesses[i]);
         std::ranges::sort(starts, std::greater{}, [&](const Witness& w) { return size(w.value); });
         for (const Witness& start : starts) {
-            if (look_.peaks.size() >= most_peaks || !affordable(40 * n_)) break;
+            if (look_.peaks.size() >= most_peaks + ridges_ || !affordable(40 * n_)) break;
             if (!(size(start.value) > outstanding * median)) break;
             const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
             const auto is_known = [&](const Witness& w) {
@@ -398,16 +409,127 @@ class Look {
             look_.peaks.push_back(std::move(top));
             std::ranges::move(opposite, std::back_inserter(look_.peaks));
         }
+        for (; flanked_ < look_.peaks.size(); ++flanked_) see_flanks(look_.peaks[flanked_]);
+    }
+
+    // Points on the flanks of a peak: a region of cubature that its top is not in may hold a part of it.
+    void see_flanks(const Witness& peak) {
+        std::vector<Point> points;
+        for (std::size_t d = 0; d < n_; ++d)
+            for (double distance : {-2.0, 2.0}) { // extents
+                points.push_back(peak.u);
+                double& u = points.back()[d];
+                u += distance * peak.extent[d];
+                if (!(u > 0 && u < 1)) points.pop_back();
+            }
+        const auto rows = raw_(points);
+        for (std::size_t i = 0; i < points.size(); ++i) keep(points[i], rows[i], peak.volume, false);
+    }
+
+    static std::vector<Point> places_of(const std::vector<GuideZero>& zeros) {
+        std::vector<Point> places;
+        for (const GuideZero& zero : zeros) places.push_back(zero.u);
+        return places;
+    }
+
+    // Tells ridges from peaks: there the integrand is as high at several zeros of a guide as between two of them. Their volume
+    // is that along the way, of which the box around one point is a small part.
+    void find_ridges() {
+        for (std::size_t first = 0, next = 0; first < zeros_.size() && n_ <= most_climbed; first = next) {
+            std::vector<Point> zeros;
+            for (; next < zeros_.size() && zeros_[next].guide == zeros_[first].guide; ++next)
+                zeros.push_back(zeros_[next].u);
+            if (zeros.size() > 1 && affordable(40 * n_))
+                find_ridge(settings_.guides[zeros_[first].guide], zeros);
+        }
+    }
+
+    void find_ridge(const Integrand::BatchFunction& guide, std::vector<Point> zeros) {
+        const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
+        // Between remote points of a curve a climb may lead anywhere.
+        const std::vector<Link> tree = tree_of(zeros);
+        const Link& nearest = *std::ranges::min_element(tree, {}, &Link::length);
+        Point between(n_);
+        for (std::size_t d = 0; d < n_; ++d) between[d] = 0.5 * (zeros[nearest.a][d] + zeros[nearest.b][d]);
+        zeros.push_back(climb_to_zero(guide, raw_.evaluator().domain(), between));
+        // Between two roots a climb leads to either.
+        for (std::size_t end : {nearest.a, nearest.b})
+            if (distance(zeros.back(), zeros[end]) < same_root * nearest.length) return;
+        const auto rows = raw_(zeros);
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            if (!keep(zeros[i], rows[i], 0, false)) return;
+        Witness top{zeros.back(), rows.back()};
+        const double height = size(top.value), ordinary = outstanding * median_size();
+        measure(raw_, top, magnitude);
+        if (!(height > 0) || is_rounding(top) || is_valley(raw_, top, magnitude)) return;
+        double length = 0;
+        for (const Link& link : tree)
+            if (std::min(size(rows[link.a]), size(rows[link.b])) > 0.5 * height) length += link.length;
+        top.volume *= std::max(1.0, length / (2 * *std::ranges::max_element(top.extent)));
+        ++ridges_;
+        if (height > ordinary && length > 0) look_.peaks.push_back(top);
+        if (n_ <= most_followed) follow(guide, top, least_followed * height * top.volume);
+    }
+
+    // Follows a ridge to the ends of the variables, those first where its first part holds most.
+    void follow(const Integrand::BatchFunction& guide, const Witness& top, double least) {
+        const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
+        struct End {
+            std::size_t d;
+            double side, mass;
+        };
+        std::vector<End> ends;
+        for (std::size_t d = 0; d < n_; ++d)
+            for (double side : {-1.0, 1.0}) {
+                const RidgeToEnd first = follow_ridge(raw_, guide, top.u, d, side, magnitude, least, 0);
+                if (!first.tops.empty())
+                    ends.push_back({d, side, size(first.tops[0].value) * first.tops[0].volume});
+            }
+        std::ranges::sort(ends, std::greater{}, &End::mass);
+        for (const End& end : ends) {
+            if (!affordable(0)) return;
+            const RidgeToEnd ridge = follow_ridge(raw_, guide, top.u, end.d, end.side, magnitude, least,
+                                                  settings_.most_evaluations - raw_.evaluations());
+            for (const Witness& w : ridge.tops) keep(w.u, w.value, w.volume, false);
+            if (ridge.diverges && look_.divergence.empty())
+                look_.divergence = place_text(raw_.evaluator().domain(), ridge.tops.back().u);
+        }
+    }
+
+    static double distance(const Point& a, const Point& b) {
+        double squares = 0;
+        for (std::size_t d = 0; d < a.size(); ++d) squares += std::pow(a[d] - b[d], 2);
+        return std::sqrt(squares);
+    }
+
+    struct Link {
+        std::size_t a, b;
+        double length;
+    };
+    // A tree of points: links from each but the first to the nearest before it.
+    static std::vector<Link> tree_of(const std::vector<Point>& points) {
+        std::vector<Link> tree;
+        for (std::size_t i = 1; i < points.size(); ++i) {
+            Link link{i, 0, infinity};
+            for (std::size_t j = 0; j < i; ++j)
+                if (const double length = distance(points[i], points[j]); length < link.length)
+                    link = {i, j, length};
+            tree.push_back(link);
+        }
+        return tree;
     }
 
     RawValues raw_;
     LookSettings settings_;
     std::size_t n_;
+    std::vector<GuideZero> zeros_;
     LadderPaths paths_;
     std::vector<double> largest_;       // |g| of each component
     std::vector<std::size_t> ordinary_; // witnesses
     // Witnesses close to a place inside, far above the beginning of their ladder.
     std::vector<std::size_t> deep_;
+    std::size_t ridges_ = 0;  // that were found,
+    std::size_t flanked_ = 0; // and peaks whose flanks were seen
     FirstLook look_;
 };
 

@@ -33,12 +33,14 @@ struct FirstLook {
 struct LookSettings {
     // Points near which a feature may lie, such as the numbers of a formula.
     std::span<const std::vector<double>> landmarks = {};
-    std::uint64_t most_evaluations = 1024;
+    // Functions that are zero where a feature may lie, such as the brackets of a formula.
+    std::span<const Integrand::BatchFunction> guides = {};
+    std::uint64_t most_evaluations = 2048;
     std::uint64_t seed = 0;
 };
 
 // Points at distances of 2^-3 to 2^-50 of the cube's width from its corners and its centre, from the origin and
-// from the landmarks: all variables at a time, then each by itself through the greatest value. What stands out is
+// from the landmarks and zeros of the guides: all variables at a time, then each by itself through the greatest value. What stands out is
 // climbed along each variable and its widths are measured. 24 evaluations in one variable if there are no
 // landmarks and nothing stands out; about 100 + 30 n in n. A value that is not finite is no error here: an infinite
 // one counts as a shell that grows, NaN as nothing.

@@ -16,9 +16,12 @@
 namespace montelux {
 namespace {
 
-constexpr std::size_t most_anchors = 16; // of a variable
+constexpr std::size_t most_anchors = 16; // of a variable,
+constexpr std::size_t most_guided = 12;  // by places
 constexpr std::size_t most_searched = 8; // variables of a map whose nearest points are searched for
 constexpr double same_place = 0x1p-50;
+// Exponent of the smallest distance from a place that was found by climbing, and how far from it that place may lie.
+constexpr double finest_of_climb = 36, of_climb = 0x1p-36;
 
 bool are_near(const Anchor& a, const Anchor& b) { return std::abs(a.u - b.u) < same_place; }
 
@@ -53,7 +56,8 @@ std::vector<double> LadderPath::at(double exponent) const {
 }
 
 LadderPaths::LadderPaths(const Domain& domain, std::size_t dimensions,
-                         std::span<const std::vector<double>> landmarks, std::uint64_t seed)
+                         std::span<const std::vector<double>> landmarks,
+                         std::span<const std::vector<double>> places, std::uint64_t seed)
     : domain_(domain), n_(dimensions), seed_(seed), anchors_(n_) {
     const std::span<const Range> ranges = domain_.ranges();
     for (double u : {0.0, 1.0, 0.5}) {
@@ -71,8 +75,24 @@ LadderPaths::LadderPaths(const Domain& domain, std::size_t dimensions,
                                          ", one per variable");
     if (ranges.empty() && n_ > most_searched) return;
     if (!ranges.empty()) add_place(place_in_ranges(std::vector<double>(n_, 0.0)));
-    for (std::size_t i = 0; i < landmarks.size() && places_.size() < most_anchors; ++i)
-        add_place(ranges.empty() ? nearest_place(landmarks[i]) : place_in_ranges(landmarks[i]));
+    std::vector<std::vector<Anchor>> of_landmarks;
+    for (std::size_t i = 0; i < landmarks.size() && i < most_anchors; ++i)
+        of_landmarks.push_back(ranges.empty() ? nearest_place(landmarks[i]) : place_in_ranges(landmarks[i]));
+    for (std::size_t i = 0; i < places.size() && places_.size() < most_guided; ++i) {
+        std::vector<Anchor> place;
+        for (std::size_t d = 0; d < n_; ++d) {
+            place.push_back(
+                {places[i][d], ranges.empty()
+                                   ? finest_of_climb
+                                   : std::min(finest_of_climb, finest_exponent(domain_, d, places[i][d]))});
+            // A number of the formula is where it is; a climb comes close to it.
+            for (const std::vector<Anchor>& other : of_landmarks)
+                if (!other.empty() && std::abs(other[d].u - places[i][d]) < of_climb) place.back() = other[d];
+        }
+        add_place(std::move(place));
+    }
+    for (std::vector<Anchor>& place : of_landmarks)
+        if (places_.size() < most_anchors) add_place(std::move(place));
 }
 
 void LadderPaths::add_place(std::vector<Anchor> place) {

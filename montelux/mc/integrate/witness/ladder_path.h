@@ -39,8 +39,9 @@ class LadderPaths {
   public:
     // `landmarks`: points near which features may lie. Of a box, a coordinate outside of its range stands for the range's
     // centre; of another domain of up to eight variables, a point stands for the nearest one.
+    // `places`: points of the cube that climbs found, which come first.
     LadderPaths(const Domain& domain, std::size_t dimensions, std::span<const std::vector<double>> landmarks,
-                std::uint64_t seed);
+                std::span<const std::vector<double>> places, std::uint64_t seed);
 
     // Both sides of each anchor of a variable, the others fixed; or of its ends alone.
     std::vector<LadderPath> along(std::size_t d, const std::vector<double>& through, bool ends = false) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <vector>
 
+#include "montelux/mc/integrate/witness/guide_zeros.h"
 #include "montelux/mc/integrate/witness/shells.h"
 
 namespace montelux {
@@ -13,6 +14,10 @@ namespace {
 constexpr double far_out = 1e-4; // of the cube's width, from an end at infinity
 // Exponents of the distances from that end; closer to 1 doubles do not resolve widths of one unit.
 constexpr std::array scales{22.0, 18.0, 14.0, 10.0};
+// Ridges of a guide: exponents of the distances between scales, the last one, and the least part of the mass two scales before.
+constexpr double guided_step = 3, most_guided_scale = 45, guided_fall = 0.85;
+constexpr double valley =
+    100; // times the value on a line: where it is greater beside it, the line is no ridge
 constexpr double not_falling = 0.8;              // of the outermost mass beside the innermost one,
 constexpr double steady = 0.4;                   // and of any other beside the next
 constexpr std::array far_exponents{16.0, 200.0}; // of distances
@@ -101,6 +106,149 @@ bool ridge_diverges(RawValues& raw, const std::vector<double>& u, const Magnitud
         if (i > 0 && !(mass[i - 1] >= steady * mass[i])) return false;
     }
     return mass.front() >= not_falling * mass.back();
+}
+
+namespace {
+
+// The line or plane at x_d in a box, its other variables by sinh, so that all distances up to 2^64 are resolved alike.
+class FarSlice {
+  public:
+    FarSlice(std::size_t n, std::size_t d, double x_d) : n_(n), d_(d), x_d_(x_d) {}
+
+    Domain domain() const {
+        return Domain::mapped(static_cast<int>(n_) - 1, static_cast<int>(n_),
+                              [slice = *this](std::span<const double> v, std::span<double> x) {
+                                  for (std::size_t e = 0, k = 0; e < x.size(); ++e)
+                                      x[e] = e == slice.d_ ? slice.x_d_ : std::sinh(range * (2 * v[k++] - 1));
+                                  return 1.0;
+                              });
+    }
+    std::vector<double> point(const std::vector<double>& v) const {
+        std::vector<double> x;
+        for (std::size_t e = 0, k = 0; e < n_; ++e)
+            x.push_back(e == d_ ? x_d_ : std::sinh(range * (2 * v[k++] - 1)));
+        return x;
+    }
+    std::vector<double> place(const std::vector<double>& x) const {
+        std::vector<double> v;
+        for (std::size_t e = 0; e < n_; ++e)
+            if (e != d_) v.push_back(0.5 + 0.5 * std::asinh(x[e]) / range);
+        return v;
+    }
+
+  private:
+    static constexpr double range = 45;
+    std::size_t n_, d_;
+    double x_d_;
+};
+
+// Half widths of a ridge at x across variable d: by bisection of the exponents of distances; the product of twice these, 0
+// where doubles do not resolve one, and -1 where x is in a valley.
+double width_across(RawValues& raw, const std::vector<double>& x, std::size_t d, double height,
+                    const Magnitude& magnitude) {
+    constexpr double finest = 32, coarsest = -4; // climbs are exact to 2^-36
+    constexpr int bisections = 10;
+    double product = 1;
+    for (std::size_t e = 0; e < x.size(); ++e) {
+        if (e == d) continue;
+        const Range& range = raw.evaluator().domain().ranges()[e];
+        const double scale = std::max(1.0, std::abs(x[e]));
+        double width = 0;
+        for (double side : {-1.0, 1.0}) {
+            double inside = finest, outside = coarsest;
+            for (int i = 0; i < bisections; ++i) {
+                const double middle = 0.5 * (inside + outside);
+                std::vector<double> at = x;
+                at[e] += side * scale * std::exp2(-middle);
+                const bool in_range = at[e] > range.lower && at[e] < range.upper;
+                const double here = in_range ? magnitude(raw.at({at})[0]) : 0;
+                if (here > valley * height) return -1;
+                (here >= 0.5 * height ? inside : outside) = middle;
+            }
+            if (inside == finest) return 0;
+            width += scale * std::exp2(-inside);
+        }
+        product *= width;
+    }
+    return product;
+}
+
+// Whether the masses of a ridge do not fall from scale to scale of variable d, as far out as doubles resolve it.
+bool diverges_far_out(RawValues& raw, const Integrand::BatchFunction& guide, std::vector<double> x,
+                      std::size_t d, double side, const Magnitude& magnitude) {
+    const std::span<const Range> ranges = raw.evaluator().domain().ranges();
+    const double other_end = side > 0 ? ranges[d].lower : ranges[d].upper;
+    std::vector<double> masses;
+    for (double k = guided_step; k <= most_guided_scale; k += guided_step) {
+        const FarSlice slice(x.size(), d, (std::isinf(other_end) ? 0 : other_end) + side * std::exp2(k));
+        x = slice.point(climb_to_zero(guide, slice.domain(), slice.place(x)));
+        for (std::size_t e = 0; e < x.size(); ++e)
+            if (!(x[e] > ranges[e].lower && x[e] < ranges[e].upper)) return false;
+        const double height = magnitude(raw.at({x})[0]);
+        if (!(height > 0) || !std::isfinite(height)) return false;
+        const double width = width_across(raw, x, d, height, magnitude);
+        if (width < 0) return false;
+        if (width == 0) break;
+        masses.push_back(height * width * std::exp2(k));
+        const std::size_t i = masses.size();
+        if (i > 2 && masses[i - 1] < guided_fall * masses[i - 3]) return false;
+    }
+    return masses.size() > 2;
+}
+
+} // namespace
+
+bool is_valley(RawValues& raw, const Witness& top, const Magnitude& magnitude) {
+    std::vector<std::vector<double>> beside;
+    for (std::size_t d = 0; d < top.u.size(); ++d)
+        for (double side : {-0.5, 0.5}) {
+            beside.push_back(top.u);
+            beside.back()[d] += side * top.extent[d];
+        }
+    const double high = valley * magnitude(top.value);
+    return std::ranges::any_of(raw(beside), [&](const auto& row) { return magnitude(row) > high; });
+}
+
+RidgeToEnd follow_ridge(RawValues& raw, const Integrand::BatchFunction& guide,
+                        const std::vector<double>& from, std::size_t d, double side,
+                        const Magnitude& magnitude, double least, std::uint64_t most_evaluations) {
+    const Domain& domain = raw.evaluator().domain();
+    const std::uint64_t begin = raw.evaluations();
+    RidgeToEnd ridge;
+    std::vector<double> masses;
+    for (double k = guided_step; k <= most_guided_scale; k += guided_step) {
+        Witness top{masses.empty() ? from : ridge.tops.back().u, {}};
+        top.u[d] = side > 0 ? 1 - std::exp2(-k) : std::exp2(-k);
+        top.u = climb_to_zero(guide, domain, std::move(top.u), d);
+        top.value = raw({top.u})[0];
+        const double height = magnitude(top.value);
+        if (!(height > 0) || !std::isfinite(height)) break;
+        measure(raw, top, magnitude, finer);
+        if (is_rounding(top) || is_valley(raw, top, magnitude)) break;
+        top.volume *= std::exp2(-k) / (2 * top.extent[d]); // all of the shell
+        if (!(height * top.volume > least)) break;
+        masses.push_back(height * top.volume);
+        ridge.tops.push_back(std::move(top));
+        if (raw.evaluations() - begin > most_evaluations) break;
+        for (double between = 1; between < guided_step; ++between) {
+            Witness w{ridge.tops.back().u, {}, 0.25 * ridge.tops.back().volume};
+            w.u[d] = side > 0 ? 1 - std::exp2(-k - between) : std::exp2(-k - between);
+            w.u = climb_to_zero(guide, domain, std::move(w.u), d);
+            w.value = raw({w.u})[0];
+            ridge.tops.push_back(std::move(w));
+        }
+    }
+    const std::span<const Range> ranges = domain.ranges();
+    if (ranges.empty() || !std::isinf(side > 0 ? ranges[d].upper : ranges[d].lower)) return ridge;
+    if (masses.size() < 3 || !(masses[2] >= steady * masses[0])) return ridge;
+    PointBuffer u(1, static_cast<int>(from.size())), x(1, domain.dimensions());
+    for (std::size_t e = 0; e < from.size(); ++e) u(0, static_cast<int>(e)) = ridge.tops.front().u[e];
+    std::array<double, 1> volume{1};
+    domain.map(u, x, volume);
+    std::vector<double> at(from.size());
+    x.view().gather(0, at.data());
+    ridge.diverges = diverges_far_out(raw, guide, std::move(at), d, side, magnitude);
+    return ridge;
 }
 
 } // namespace montelux

@@ -223,6 +223,22 @@ TEST(Cubature, WarnsOfAnIntegrandThatSeemsZeroEverywhere) {
     EXPECT_NE(r.warnings[0].find("was zero at each of"), std::string::npos);
 }
 
+// A ring of width 2e-5 that holds 8.8 beside 4: regions around single points of it do not lead along it.
+TEST(Cubature, DoesNotClaimWithoutTheRestOfAThinRidge) {
+    const auto ring = [](std::span<const double> x) {
+        return std::abs(std::hypot(x[0], x[1]) - 0.7) < 1e-5 ? 1e5 : 1;
+    };
+    const Integrand guide([](std::span<const double> x) { return std::hypot(x[0], x[1]) - 0.7; });
+    const Integrand f =
+        Integrand(ring).with_guides({[=](const PointBatch& x, ValueBatch y) { guide(x, y); }});
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        const IntegrationResult r =
+            integrate(f, Domain({{-1, 1}, {-1, 1}}), Cubature{},
+                      {.relative_error = 1e-3, .evaluations = 200'000}, {.seed = seed, .threads = 1});
+        EXPECT_FALSE(r.converged()) << seed << " " << r.value[0];
+    }
+}
+
 TEST(Cubature, KnowsNoErrorBeforeAnyValueWasSeen) {
     auto needle = [](std::span<const double> x) {
         return std::abs(x[0] - 0.123) < 1e-4 && std::abs(x[1] - 0.456) < 1e-4 ? 1.0 : 0.0;

@@ -263,5 +263,43 @@ TEST(FirstLook, LogarithmsOfWidePeaksAreFoundToo) {
     EXPECT_NEAR(r.log_value, 0.5 * std::log(3.141592653589793), 4 * r.log_error + 1e-9);
 }
 
+// A regular ring of height 1e5 and half width 1e-5 on a plain of height 1, whose guide is known: the ring holds 8.8, of which
+// a box around one of its points has 1/10^5.
+TEST(FirstLook, MeasuresRidgesOfGuides) {
+    const auto ring = [](std::span<const double> x) {
+        return std::abs(std::hypot(x[0], x[1]) - 0.7) < 1e-5 ? 1e5 : 1;
+    };
+    const Integrand guide([](std::span<const double> x) { return std::hypot(x[0], x[1]) - 0.7; });
+    const std::vector<Integrand::BatchFunction> guides{
+        [&](const PointBatch& x, ValueBatch y) { guide(x, y); }};
+    const Evaluator evaluator(Integrand(ring), Domain({{-1, 1}, {-1, 1}}));
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const FirstLook look = first_look(evaluator, {.guides = guides, .seed = seed});
+        double most = 0;
+        for (const Witness& peak : look.peaks) most = std::max(most, peak.value[0] * peak.volume);
+        EXPECT_GT(most, 1) << seed;
+        EXPECT_LT(most, 12) << seed;
+    }
+}
+
+// A region of cubature that begins beside the top holds a part of the peak.
+TEST(FirstLook, SeesFlanksOfPeaks) {
+    const auto peak = [](std::span<const double> x) {
+        return 1 + 1e4 * std::exp(-1e6 * (std::pow(x[0] - 0.3, 2) + std::pow(x[1] - 0.7, 2)));
+    };
+    const FirstLook look = look_at(peak, Domain::unit_cube(2), {{0.3, 0.7}});
+    ASSERT_EQ(look.peaks.size(), 1u);
+    for (std::size_t d : {0u, 1u})
+        for (double side : {-1.0, 1.0})
+            EXPECT_GE(std::ranges::count_if(look.witnesses,
+                                            [&](const Witness& w) {
+                                                const double by = side * (w.u[d] - look.peaks[0].u[d]);
+                                                return w.u[1 - d] == look.peaks[0].u[1 - d] && by > 0 &&
+                                                       by < 4 * look.peaks[0].extent[d] && w.value[0] > 2;
+                                            }),
+                      1)
+                << d << " " << side;
+}
+
 } // namespace
 } // namespace montelux

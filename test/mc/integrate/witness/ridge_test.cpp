@@ -82,5 +82,60 @@ TEST(Ridge, DivergenceIsToldAndConvergenceIsNotDenied) {
     }
 }
 
+// Ridges along curves, whose guide is zero on them.
+TEST(Ridge, OfAGuideIsFollowedToInfinity) {
+    struct Curve {
+        std::string name;
+        bool diverges;
+        double (*guide)(std::span<const double> x);
+        double (*along)(double x);
+    };
+    const auto rooted = [](std::span<const double> x) { return x[1] - std::sqrt(x[0]); };
+    const auto line = [](std::span<const double> x) { return x[0] - 2 * x[1]; };
+    const auto square = [](std::span<const double> x) { return x[1] - x[0] * x[0]; };
+    const std::vector<Curve> curves{
+        {"root, 1/x", true, rooted, [](double x) { return 1 / (1 + x); }},
+        {"root, x^-1.2", false, rooted, [](double x) { return std::pow(1 + x, -1.2); }},
+        {"root, long", false, rooted, [](double x) { return std::exp(-1e-5 * x); }},
+        {"line, constant", true, line, [](double) { return 1.0; }},
+        {"line, long", false, line, [](double x) { return std::exp(-1e-5 * x); }},
+        {"square, 1/x", true, square, [](double x) { return 1 / (1 + x); }},
+        {"square, x^-1.5", false, square, [](double x) { return std::pow(1 + x, -1.5); }},
+    };
+    const Domain quadrant{{0, infinity}, {0, infinity}};
+    const Magnitude magnitude = [](const std::vector<double>& row) { return row[0]; };
+    for (const Curve& curve : curves) {
+        const Integrand guide(curve.guide);
+        const Integrand f([curve](std::span<const double> x) {
+            return std::exp(-std::pow(curve.guide(x), 2)) * curve.along(x[0]);
+        });
+        const Evaluator evaluator(f, quadrant);
+        RawValues raw(evaluator);
+        const RidgeToEnd ridge = follow_ridge(
+            raw, [&](const PointBatch& x, ValueBatch y) { guide(x, y); }, {0.5, 0.5}, 0, 1, magnitude, 0,
+            1000);
+        EXPECT_GE(ridge.tops.size(), 3u) << curve.name;
+        EXPECT_EQ(ridge.diverges, curve.diverges) << curve.name;
+        EXPECT_LT(raw.evaluations(), 1600u) << curve.name;
+    }
+}
+
+// The integrand vanishes on the curve, and is largest beside it.
+TEST(Ridge, ALineInAValleyIsNoRidge) {
+    const auto curve = [](std::span<const double> x) { return x[1] - x[0] * x[0]; };
+    const Integrand guide(curve);
+    const Integrand f([curve](std::span<const double> x) {
+        const double square = std::pow(curve(x), 2);
+        return square * std::exp(-square) / (1 + x[0] * x[0]);
+    });
+    const Evaluator evaluator(f, Domain({{0, infinity}, {0, infinity}}));
+    RawValues raw(evaluator);
+    const RidgeToEnd ridge = follow_ridge(
+        raw, [&](const PointBatch& x, ValueBatch y) { guide(x, y); }, {0.5, 0.5}, 0, 1,
+        [](const std::vector<double>& row) { return row[0]; }, 0, 1000);
+    EXPECT_TRUE(ridge.tops.empty());
+    EXPECT_FALSE(ridge.diverges);
+}
+
 } // namespace
 } // namespace montelux

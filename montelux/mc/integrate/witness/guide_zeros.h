@@ -1,0 +1,30 @@
+// Places where the guides of an integrand are zero, near which it may have features.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "montelux/mc/integrate/domain.h"
+#include "montelux/mc/integrate/integrand.h"
+
+namespace montelux {
+
+struct GuideZero {
+    std::vector<double> u; // of the unit cube; 0.5 in variables that the guide does not depend on
+    std::size_t guide;
+};
+
+// Climbs log(1/|guide|) from a few scattered points each to places inside of the cube where a guide is zero, up to eight of
+// each guide, each place once: where |guide| has underflowed, or a peak has, the guide still has a slope. Up to eight variables. `seed`: of
+// the scattered points.
+std::vector<GuideZero> guide_zeros(std::span<const Integrand::BatchFunction> guides, const Domain& domain,
+                                   std::uint64_t seed);
+
+// The place of a guide's zero to which a climb from u leads, along all variables or all but the fixed one.
+std::vector<double> climb_to_zero(const Integrand::BatchFunction& guide, const Domain& domain,
+                                  std::vector<double> u, std::optional<std::size_t> fixed = {});
+
+} // namespace montelux
