@@ -370,9 +370,9 @@ class CubatureEstimator final : public Estimator {
 
     void add_up() { totals_.add_up(regions_, verification_, confirmation_, evaluations_); }
 
-    // A ridge so much longer than it is wide that regions around single points of it do not lead to the others.
+    // A ridge whose parts are so much longer than wide that regions around single points do not lead to the others.
     const Witness* unresolved_ridge(const Tally& tally) const {
-        constexpr double much_longer = 256;
+        constexpr double much_longer = 32;
         if (!problem_.look) return nullptr;
         for (const Witness& w : problem_.look->peaks) {
             double box = 1;

@@ -14,6 +14,7 @@
 namespace montelux {
 namespace {
 
+constexpr double least_of_all = 0.05;              // standard errors: a peak that may count beside others
 constexpr double far_above = 32;                   // times the mean of |g|: a value that is examined
 constexpr std::uint64_t most_of_examination = 600; // evaluations, for each variable and one more
 
@@ -138,7 +139,8 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
     if (tally.statistical) missed_of = unreached(look_.slow, missed_of.size(), density, points);
     for (std::size_t c = 0; c < tally.value.size(); ++c) {
         const double tolerance = std::max(request.tolerance(c, tally.value[c]), tally.standard_error[c]);
-        double worst = 0, expected = 0; // mass of a peak that points missed, or may have missed
+        // Mass of a peak that points missed, or may have missed, and of all peaks that they missed.
+        double worst = 0, expected = 0, of_peaks = 0;
         const Witness* where = nullptr;
         for (const auto* all : {&look_.peaks, &look_.witnesses})
             for (const Witness& w : *all) {
@@ -147,7 +149,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
                     return unexplained(w.value[c], w.volume, q, points, size_of(tally, c));
                 };
                 // Most witnesses are explained by any density.
-                if (!(mass_by(0x1p-4) > tally.standard_error[c])) continue;
+                if (!(mass_by(0x1p-4) > least_of_all * tally.standard_error[c])) continue;
                 // A peak speaks for those within it.
                 if (all == &look_.witnesses && std::ranges::any_of(look_.peaks, [&](const Witness& peak) {
                         return lies_within(peak, w.u);
@@ -155,8 +157,10 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
                     continue;
                 const double q = density ? pdf_at(*density, w.u) : 1, mass = mass_by(q);
                 expected = std::max(expected, mass * std::exp(-points * q * w.volume));
+                if (all == &look_.peaks) of_peaks += mass;
                 if (mass > worst) worst = mass, where = &w;
             }
+        worst = std::max(worst, of_peaks);
         least[c] = std::max(least[c], expected);
         std::array<char, 200> text;
         if (where && worst > tolerance) {

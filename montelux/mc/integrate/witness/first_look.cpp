@@ -393,7 +393,7 @@ class Look {
         for (std::size_t i : from) starts.push_back(look_.witnesses[i]);
         std::ranges::sort(starts, std::greater{}, [&](const Witness& w) { return size(w.value); });
         for (const Witness& start : starts) {
-            if (look_.peaks.size() >= most_peaks + ridges_ || !affordable(40 * n_)) break;
+            if (look_.peaks.size() >= most_peaks + of_ridges_ || !affordable(40 * n_)) break;
             if (!(size(start.value) > outstanding * median)) break;
             const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
             const auto is_known = [&](const Witness& w) {
@@ -463,11 +463,18 @@ class Look {
         measure(raw_, top, magnitude);
         if (!(height > 0) || is_rounding(top) || is_valley(raw_, top, magnitude)) return;
         double length = 0;
+        std::vector<std::size_t> high;
         for (const Link& link : tree)
             if (std::min(size(rows[link.a]), size(rows[link.b])) > 0.5 * height) length += link.length;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            if (size(rows[i]) > 0.5 * height) high.push_back(i);
         top.volume *= std::max(1.0, length / (2 * *std::ranges::max_element(top.extent)));
-        ++ridges_;
-        if (height > ordinary && length > 0) look_.peaks.push_back(top);
+        if (height > ordinary && length > 0)
+            for (std::size_t i : high) { // each speaks for its part
+                const double part = top.volume / static_cast<double>(high.size());
+                look_.peaks.push_back({zeros[i], rows[i], part, top.extent});
+                ++of_ridges_;
+            }
         if (n_ <= most_followed) follow(guide, top, least_followed * height * top.volume);
     }
 
@@ -528,8 +535,8 @@ class Look {
     std::vector<std::size_t> ordinary_; // witnesses
     // Witnesses close to a place inside, far above the beginning of their ladder.
     std::vector<std::size_t> deep_;
-    std::size_t ridges_ = 0;  // that were found,
-    std::size_t flanked_ = 0; // and peaks whose flanks were seen
+    std::size_t of_ridges_ = 0; // peaks on ridges,
+    std::size_t flanked_ = 0;   // and those whose flanks were seen
     FirstLook look_;
 };
 
