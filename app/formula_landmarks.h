@@ -22,8 +22,8 @@ std::vector<std::vector<double>> formula_landmarks(const std::vector<std::string
                                                    const std::vector<std::string>& variables,
                                                    const std::function<double(std::string_view)>& value_of);
 
-// Texts of what stands in brackets, or on both sides of a comparison as their difference, where a variable is in it: functions
-// that are zero where formulas may have features. The longest ones, which hold the others, first.
+// Texts of what stands in brackets, or on both sides of a comparison as their difference, where a variable is in it:
+// functions that are zero where formulas may have features. The longest ones, which hold the others, first.
 std::vector<std::string> formula_guides(const std::vector<std::string>& texts,
                                         const std::vector<std::string>& variables);
 

@@ -99,8 +99,8 @@ class Integrand {
         return other;
     }
     std::span<const std::vector<double>> landmarks() const { return landmarks_; }
-    // Returns this integrand with guides: functions of the same variables, with one component, that are zero where it may
-    // have features, such as what stands in the brackets of a formula.
+    // Returns this integrand with guides: functions of the same variables, with one component, that are zero where it
+    // may have features, such as what stands in the brackets of a formula.
     Integrand with_guides(std::vector<BatchFunction> guides) const {
         Integrand other = *this;
         other.guides_ = std::move(guides);

@@ -116,7 +116,8 @@ class Climber {
         return top;
     }
 
-    // The step up the slope at whose end 1/h is zero, if it falls as steadily as here: exact where h is infinite on a plane.
+    // The step up the slope at whose end 1/h is zero, if it falls as steadily as here: exact where h is infinite on a
+    // plane.
     std::vector<double> step_to_pole(const std::vector<double>& h, const std::vector<double>& f) const {
         std::vector<double> step(n_);
         double squares = 0;

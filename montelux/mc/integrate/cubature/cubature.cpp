@@ -370,20 +370,6 @@ class CubatureEstimator final : public Estimator {
 
     void add_up() { totals_.add_up(regions_, verification_, confirmation_, evaluations_); }
 
-    // A ridge whose parts are so much longer than wide that regions around single points do not lead to the others.
-    const Witness* unresolved_ridge(const Tally& tally) const {
-        constexpr double much_longer = 32;
-        if (!problem_.look) return nullptr;
-        for (const Witness& w : problem_.look->peaks) {
-            double box = 1;
-            for (double extent : w.extent) box *= 2 * extent;
-            if (!(w.volume > much_longer * box)) continue;
-            for (std::size_t c = 0; c < w.value.size(); ++c)
-                if (0.5 * std::abs(w.value[c]) * w.volume > tally.standard_error[c]) return &w;
-        }
-        return nullptr;
-    }
-
     void add_warnings(Tally& tally) const {
         std::size_t unseen = 0;
         for (char c : nonzero_) unseen += c == 0;
@@ -398,10 +384,6 @@ class CubatureEstimator final : public Estimator {
             tally.warnings.push_back("the memory for regions is used up at " + std::to_string(max_regions_) +
                                      " regions; raise max_memory, or take a method that samples");
         if (!verification_.warning().empty()) tally.warnings.push_back(verification_.warning());
-        if (const Witness* ridge = unresolved_ridge(tally))
-            tally.warnings.push_back("a thin ridge through " +
-                                     place_text(problem_.evaluator.domain(), ridge->u).substr(5) +
-                                     " may hold more than the rules saw");
         if ((n_ > 1 || verification_.blind()) && verification_.points() > 0 && !tally.localised) {
             std::ostringstream text;
             text << verification_.points() << " random points checked the rules; they miss other values in 1/"

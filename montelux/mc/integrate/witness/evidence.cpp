@@ -14,8 +14,8 @@
 namespace montelux {
 namespace {
 
-constexpr double least_of_all = 0.05;              // standard errors: a peak that may count beside others
-constexpr double far_above = 32;                   // times the mean of |g|: a value that is examined
+constexpr double least_of_all = 0.05; // standard errors: the least mass of a peak that counts beside others
+constexpr double far_above = 32;      // times the mean of |g|: a value that is examined
 constexpr std::uint64_t most_of_examination = 600; // evaluations, for each variable and one more
 
 // Integral of |g|, or what is known of it.

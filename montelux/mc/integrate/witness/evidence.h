@@ -20,7 +20,8 @@ class Evidence {
     Evidence(const Evidence&) = delete;
     Evidence& operator=(const Evidence&) = delete;
 
-    // Takes the first look by the landmarks and guides of f, with at most so many evaluations; forgets an earlier one, whose evaluations still count.
+    // Takes the first look by the landmarks and guides of f, with at most so many evaluations; forgets an earlier one,
+    // whose evaluations still count.
     void look(const Integrand& f, std::uint64_t most_evaluations);
     // Follows a change of the values' unit, by powers of two with these exponents, one per component. Largest values are
     // forgotten: an estimator that starts again meets them again.

@@ -432,8 +432,8 @@ class Look {
         return places;
     }
 
-    // Tells ridges from peaks: there the integrand is as high at several zeros of a guide as between two of them. Their volume
-    // is that along the way, of which the box around one point is a small part.
+    // Tells ridges from peaks: there the integrand is as high at several zeros of a guide as between two of them. Their
+    // volume is that along the way, of which the box around one point is a small part.
     void find_ridges() {
         for (std::size_t first = 0, next = 0; first < zeros_.size() && n_ <= most_climbed; first = next) {
             std::vector<Point> zeros;

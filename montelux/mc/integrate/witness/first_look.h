@@ -39,11 +39,11 @@ struct LookSettings {
     std::uint64_t seed = 0;
 };
 
-// Points at distances of 2^-3 to 2^-50 of the cube's width from its corners and its centre, from the origin and
-// from the landmarks and zeros of the guides: all variables at a time, then each by itself through the greatest value. What stands out is
-// climbed along each variable and its widths are measured. 24 evaluations in one variable if there are no
-// landmarks and nothing stands out; about 100 + 30 n in n. A value that is not finite is no error here: an infinite
-// one counts as a shell that grows, NaN as nothing.
+// Points at distances of 2^-3 to 2^-50 of the cube's width from its corners and its centre, from the origin and from
+// the landmarks and zeros of the guides: all variables at a time, then each by itself through the greatest value. What
+// stands out is climbed along each variable and its widths are measured. 24 evaluations in one variable if there are no
+// landmarks and nothing stands out; about 100 + 30 n in n. A value that is not finite is no error here: an infinite one
+// counts as a shell that grows, NaN as nothing.
 FirstLook first_look(const Evaluator& evaluator, const LookSettings& settings = {});
 
 // A point of the cube as "x -> (0.3, 0.7)", in the domain's coordinates.

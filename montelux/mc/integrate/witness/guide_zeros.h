@@ -17,9 +17,9 @@ struct GuideZero {
     std::size_t guide;
 };
 
-// Climbs log(1/|guide|) from a few scattered points each to places inside of the cube where a guide is zero, up to eight of
-// each guide, each place once: where |guide| has underflowed, or a peak has, the guide still has a slope. Up to eight variables. `seed`: of
-// the scattered points.
+// Places inside of the cube where a guide is zero, up to eight of each, each place once: climbs log(1/|guide|) from
+// scattered points. The guide has a slope where the integrand has underflowed. Domains of up to eight variables; of
+// others none. `seed`: of the scattered points.
 std::vector<GuideZero> guide_zeros(std::span<const Integrand::BatchFunction> guides, const Domain& domain,
                                    std::uint64_t seed);
 

@@ -85,7 +85,7 @@ LadderPaths::LadderPaths(const Domain& domain, std::size_t dimensions,
                 {places[i][d], ranges.empty()
                                    ? finest_of_climb
                                    : std::min(finest_of_climb, finest_exponent(domain_, d, places[i][d]))});
-            // A number of the formula is where it is; a climb comes close to it.
+            // Numbers of a formula are exact, climbs come close to them.
             for (const std::vector<Anchor>& other : of_landmarks)
                 if (!other.empty() && std::abs(other[d].u - places[i][d]) < of_climb) place.back() = other[d];
         }

@@ -14,7 +14,8 @@ namespace {
 constexpr double far_out = 1e-4; // of the cube's width, from an end at infinity
 // Exponents of the distances from that end; closer to 1 doubles do not resolve widths of one unit.
 constexpr std::array scales{22.0, 18.0, 14.0, 10.0};
-// Ridges of a guide: exponents of the distances between scales, the last one, and the least part of the mass two scales before.
+// Ridges of a guide: exponents of the distances between scales, the last one, and the least part of the mass two scales
+// before.
 constexpr double guided_step = 3, most_guided_scale = 45, guided_fall = 0.85;
 constexpr double valley =
     100; // times the value on a line: where it is greater beside it, the line is no ridge
@@ -142,8 +143,8 @@ class FarSlice {
     double x_d_;
 };
 
-// Half widths of a ridge at x across variable d: by bisection of the exponents of distances; the product of twice these, 0
-// where doubles do not resolve one, and -1 where x is in a valley.
+// Half widths of a ridge at x across variable d: by bisection of the exponents of distances; the product of twice
+// these, 0 where doubles do not resolve one, and -1 where x is in a valley.
 double width_across(RawValues& raw, const std::vector<double>& x, std::size_t d, double height,
                     const Magnitude& magnitude) {
     constexpr double finest = 32, coarsest = -4; // climbs are exact to 2^-36

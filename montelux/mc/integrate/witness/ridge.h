@@ -24,8 +24,8 @@ struct RidgeToEnd {
     std::vector<Witness> tops; // at each octave of the distance; each speaks for its part of the ridge
     bool diverges = false; // masses do not fall towards an infinite end, as far as doubles resolve the ridge
 };
-// `least`: mass at which it ends; `most_evaluations`, after which no further scale is begun. About 20 n at each scale, and
-// 20 n at as many scales again where the masses hardly fall.
+// `least`: mass at which it ends; `most_evaluations`, after which no further scale is begun. About 20 n at each scale,
+// and 20 n at as many scales again where the masses hardly fall.
 RidgeToEnd follow_ridge(RawValues& raw, const Integrand::BatchFunction& guide,
                         const std::vector<double>& from, std::size_t d, double side,
                         const Magnitude& magnitude, double least, std::uint64_t most_evaluations);

@@ -263,8 +263,8 @@ TEST(FirstLook, LogarithmsOfWidePeaksAreFoundToo) {
     EXPECT_NEAR(r.log_value, 0.5 * std::log(3.141592653589793), 4 * r.log_error + 1e-9);
 }
 
-// A regular ring of height 1e5 and half width 1e-5 on a plain of height 1, whose guide is known: the ring holds 8.8, of which
-// a box around one of its points has 1/10^5.
+// A regular ring of height 1e5 and half width 1e-5 on a plain of height 1, whose guide is known: the ring holds 8.8, of
+// which a box around one of its points has 1/10^5.
 TEST(FirstLook, MeasuresRidgesOfGuides) {
     const auto ring = [](std::span<const double> x) {
         return std::abs(std::hypot(x[0], x[1]) - 0.7) < 1e-5 ? 1e5 : 1;
@@ -289,16 +289,15 @@ TEST(FirstLook, SeesFlanksOfPeaks) {
     };
     const FirstLook look = look_at(peak, Domain::unit_cube(2), {{0.3, 0.7}});
     ASSERT_EQ(look.peaks.size(), 1u);
+    const Witness& top = look.peaks[0];
     for (std::size_t d : {0u, 1u})
-        for (double side : {-1.0, 1.0})
-            EXPECT_GE(std::ranges::count_if(look.witnesses,
-                                            [&](const Witness& w) {
-                                                const double by = side * (w.u[d] - look.peaks[0].u[d]);
-                                                return w.u[1 - d] == look.peaks[0].u[1 - d] && by > 0 &&
-                                                       by < 4 * look.peaks[0].extent[d] && w.value[0] > 2;
-                                            }),
-                      1)
-                << d << " " << side;
+        for (double side : {-1.0, 1.0}) {
+            const auto is_flank = [&](const Witness& w) {
+                return w.u[1 - d] == top.u[1 - d] &&
+                       std::abs(side * (w.u[d] - top.u[d]) / top.extent[d] - 2) < 1e-6 && w.value[0] > 2;
+            };
+            EXPECT_EQ(std::ranges::count_if(look.witnesses, is_flank), 1) << d << " " << side;
+        }
 }
 
 } // namespace
