@@ -355,7 +355,7 @@ std::vector<Gaussian> find_modes(const DensityFunction& h, const PointBatch& x,
         if (mode) add(std::move(*mode), top);
     }
     // Climbs from a point where h exceeds the known modes, and adds the mode there, if it is a new one.
-    const auto climb_from = [&](std::vector<double> begin, bool exceeds) {
+    const auto climb_from = [&](const std::vector<double>& begin, bool exceeds) {
         std::vector<double> at = begin;
         double top = climber.climb(at);
         if (exceeds && is_known(at)) {

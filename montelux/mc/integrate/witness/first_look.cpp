@@ -428,6 +428,7 @@ class Look {
 
     static std::vector<Point> places_of(const std::vector<GuideZero>& zeros) {
         std::vector<Point> places;
+        places.reserve(zeros.size());
         for (const GuideZero& zero : zeros) places.push_back(zero.u);
         return places;
     }

@@ -110,6 +110,7 @@ std::vector<double> climb_to_zero(const Integrand::BatchFunction& guide, const D
     for (std::size_t d = 0; d < u.size(); ++d)
         if (d != fixed) moving.push_back(d);
     std::vector<double> at;
+    at.reserve(moving.size());
     for (std::size_t d : moving) at.push_back(u[d]);
     const DensityFunction inverse = [&](const PointBatch& points, std::span<double> h) {
         PointBuffer all(points.count(), static_cast<int>(u.size()));
