@@ -80,7 +80,7 @@ class HardIntegrals(ProgramTest):
             (1.55787364, "exp(-(y-sqrt(x))^2)/(1+x)^2 --over x,y=0:inf"),
         ]:
             for seed in 1, 2, 3:
-                self.honest(truth, f"{line} --relative-error 1e-3 --time 5 --seed {seed}")
+                self.honest(truth, f"{line} --relative-error 1e-3 --evaluations 2M --seed {seed}")
 
     def test_divergence_along_curves(self):
         for line in (
@@ -91,5 +91,5 @@ class HardIntegrals(ProgramTest):
         ):
             for seed in 1, 2, 3:
                 with self.subTest(line, seed=seed):
-                    outcome, result = self.result(f"{line} --relative-error 1e-3 --time 5 --seed {seed}")
+                    outcome, result = self.result(f"{line} --relative-error 1e-3 --evaluations 2M --seed {seed}")
                     self.assertEqual((outcome.code, result["stop"]), (3, "diverges"), outcome)

@@ -244,7 +244,7 @@ TEST(Portals, OtherSideAndPlaneAreDark) {
     }
 }
 
-// Of a grid over the sphere, the irradiance on a plane with normal n that comes through the portal: every
+// Irradiance by a grid over the sphere, on a plane with normal n that comes through the portal: every
 // texel is cut into 60 x 60 parts.
 double irradiance_over_sphere(const View& v, Vec3d n, const EnvironmentGrid& grid, const auto& world,
                               const auto& radiance) {

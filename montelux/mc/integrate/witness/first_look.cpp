@@ -447,13 +447,13 @@ class Look {
 
     void find_ridge(const Integrand::BatchFunction& guide, std::vector<Point> zeros) {
         const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
-        // Between remote points of a curve a climb may lead anywhere.
+        // The nearest pair: a climb from between remote points of a curve may lead anywhere.
         const std::vector<Link> tree = tree_of(zeros);
         const Link& nearest = *std::ranges::min_element(tree, {}, &Link::length);
         Point between(n_);
         for (std::size_t d = 0; d < n_; ++d) between[d] = 0.5 * (zeros[nearest.a][d] + zeros[nearest.b][d]);
         zeros.push_back(climb_to_zero(guide, raw_.evaluator().domain(), between));
-        // Between two roots a climb leads to either.
+        // Isolated roots: a climb from between two of them leads to either.
         for (std::size_t end : {nearest.a, nearest.b})
             if (distance(zeros.back(), zeros[end]) < same_root * nearest.length) return;
         const auto rows = raw_(zeros);

@@ -34,6 +34,16 @@ double side_of(const Domain& domain, std::span<const double> u, std::size_t d) {
     return std::isinf(ranges[d].upper) && 1 - u[d] < far_out ? 1 : 0;
 }
 
+std::vector<double> point_of_box(const Domain& domain, const std::vector<double>& u) {
+    PointBuffer at(1, static_cast<int>(u.size())), x(1, domain.dimensions());
+    for (std::size_t d = 0; d < u.size(); ++d) at(0, static_cast<int>(d)) = u[d];
+    std::array<double, 1> volume{1};
+    domain.map(at, x, volume);
+    std::vector<double> point(u.size());
+    x.view().gather(0, point.data());
+    return point;
+}
+
 // Whether |f| falls faster than 1 / distance along the only variable that is far out, at distances that points of the cube
 // do not reach.
 bool falls_along(RawValues& raw, const std::vector<double>& u, const Magnitude& magnitude) {
@@ -44,14 +54,9 @@ bool falls_along(RawValues& raw, const std::vector<double>& u, const Magnitude& 
             if (along < u.size()) return false;
             along = d;
         }
-    PointBuffer at(1, raw.evaluator().dimensions()), x(1, domain.dimensions());
-    for (std::size_t d = 0; d < u.size(); ++d) at(0, static_cast<int>(d)) = u[d];
-    std::array<double, 1> volume{1};
-    domain.map(at, x, volume);
     std::vector<std::vector<double>> points;
     for (double k : far_exponents) {
-        points.emplace_back(u.size());
-        for (std::size_t d = 0; d < u.size(); ++d) points.back()[d] = x.view()(0, static_cast<int>(d));
+        points.push_back(point_of_box(domain, u));
         points.back()[along] = side_of(domain, u, along) * std::exp2(k);
     }
     const auto rows = raw.at(points);
@@ -119,15 +124,14 @@ class FarSlice {
     Domain domain() const {
         return Domain::mapped(static_cast<int>(n_) - 1, static_cast<int>(n_),
                               [slice = *this](std::span<const double> v, std::span<double> x) {
-                                  for (std::size_t e = 0, k = 0; e < x.size(); ++e)
-                                      x[e] = e == slice.d_ ? slice.x_d_ : std::sinh(range * (2 * v[k++] - 1));
+                                  std::ranges::copy(slice.point(v), x.begin());
                                   return 1.0;
                               });
     }
-    std::vector<double> point(const std::vector<double>& v) const {
-        std::vector<double> x;
+    std::vector<double> point(std::span<const double> v) const {
+        std::vector<double> x(n_, x_d_);
         for (std::size_t e = 0, k = 0; e < n_; ++e)
-            x.push_back(e == d_ ? x_d_ : std::sinh(range * (2 * v[k++] - 1)));
+            if (e != d_) x[e] = std::sinh(range * (2 * v[k++] - 1));
         return x;
     }
     std::vector<double> place(const std::vector<double>& x) const {
@@ -242,13 +246,8 @@ RidgeToEnd follow_ridge(RawValues& raw, const Integrand::BatchFunction& guide,
     const std::span<const Range> ranges = domain.ranges();
     if (ranges.empty() || !std::isinf(side > 0 ? ranges[d].upper : ranges[d].lower)) return ridge;
     if (masses.size() < 3 || !(masses[2] >= steady * masses[0])) return ridge;
-    PointBuffer u(1, static_cast<int>(from.size())), x(1, domain.dimensions());
-    for (std::size_t e = 0; e < from.size(); ++e) u(0, static_cast<int>(e)) = ridge.tops.front().u[e];
-    std::array<double, 1> volume{1};
-    domain.map(u, x, volume);
-    std::vector<double> at(from.size());
-    x.view().gather(0, at.data());
-    ridge.diverges = diverges_far_out(raw, guide, std::move(at), d, side, magnitude);
+    ridge.diverges =
+        diverges_far_out(raw, guide, point_of_box(domain, ridge.tops.front().u), d, side, magnitude);
     return ridge;
 }
 
