@@ -49,7 +49,7 @@ class ViewClient : public std::enable_shared_from_this<ViewClient> {
     std::string next_tiles(bool has_budget);
     void end();
 
-    boost::beast::websocket::stream<boost::beast::tcp_stream> socket_;
+    boost::beast::websocket::stream<boost::beast::tcp_stream, /*deflateSupported=*/false> socket_;
     ViewHub& hub_;
     boost::beast::flat_buffer incoming_;
     std::deque<std::string> answers_;
