@@ -17,6 +17,7 @@ constexpr std::size_t scattered = 256, most_zeros = 8, most_variables = 8;
 constexpr double apart = 0.1;        // of the cube's width: between starts
 constexpr double of_ordinary = 1e-3; // of the median at scattered points: what counts as zero
 constexpr double same_zero = 1e-9, at_face = 1e-5;
+constexpr double inside = 1e-3; // distance from the opposite face, where a climb goes on
 
 // |guide| at points of the cube; infinite where it is not finite.
 std::vector<double> sizes_at(const Integrand::BatchFunction& guide, const Domain& domain,
@@ -62,8 +63,12 @@ class ZeroSearch {
                 if (depends[d]) at[d] = u_.view()(i, static_cast<int>(d));
             if (std::ranges::any_of(starts, [&](const auto& s) { return distance(s, at) < apart; })) continue;
             starts.push_back(at);
-            const std::vector<double> zero = climb_to_zero(guide, domain_, std::move(at));
-            if (std::ranges::any_of(zero, [](double u) { return u < at_face || u > 1 - at_face; })) continue;
+            std::vector<double> zero = climb_to_zero(guide, domain_, std::move(at));
+            if (is_at_face(zero)) { // a sphere goes on where its azimuth ends
+                for (double& u : zero) u = u < at_face ? 1 - inside : u > 1 - at_face ? inside : u;
+                zero = climb_to_zero(guide, domain_, std::move(zero));
+                if (is_at_face(zero)) continue;
+            }
             PointBuffer there(1, n_);
             for (int d = 0; d < n_; ++d) there(0, d) = zero[static_cast<std::size_t>(d)];
             if (!(sizes_at(guide, domain_, there)[0] < of_ordinary * ordinary)) continue;
@@ -73,6 +78,10 @@ class ZeroSearch {
     }
 
   private:
+    static bool is_at_face(const std::vector<double>& zero) {
+        return std::ranges::any_of(zero, [](double u) { return u < at_face || u > 1 - at_face; });
+    }
+
     // On which variables the guide depends: whether it changes where one has another point's value.
     std::vector<char> dependences(const Integrand::BatchFunction& guide,
                                   const std::vector<double>& sizes) const {

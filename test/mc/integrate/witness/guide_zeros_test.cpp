@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <utility>
@@ -68,6 +69,22 @@ TEST(GuideZeros, PointsOfCurvesAndPolesOfSpheres) {
             lowest = std::min(lowest, z);
         }
         EXPECT_GT(highest - lowest, 1.9) << seed;
+    }
+}
+
+// Two caps, one of which lies where the azimuth begins: climbs end at the face between its halves.
+TEST(GuideZeros, CapsWhereTheAzimuthBegins) {
+    const Domain sphere = Domain::sphere({0, 0, 0});
+    const std::vector<Guide> caps{guide_of([](std::span<const double> x) { return x[0] * x[1] - 0.4999; })};
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        std::array<int, 2> found{};
+        for (const GuideZero& zero : guide_zeros(caps, sphere, seed)) {
+            const std::vector<double> x = point_of(sphere, zero.u);
+            EXPECT_NEAR(x[0] * x[1], 0.4999, 1e-10) << seed;
+            ++found[x[0] > 0];
+        }
+        EXPECT_GT(found[0], 0) << seed;
+        EXPECT_GT(found[1], 0) << seed;
     }
 }
 
