@@ -1,9 +1,12 @@
 #include <cmath>
 #include <gtest/gtest.h>
+#include <span>
+#include <vector>
 
-#include "montelux/mc/integrate/cubature/cubature.h"
 #include "montelux/mc/integrate/cubature/cubature_confirmation.h"
-#include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/cubature/cubature_totals.h"
+#include "montelux/mc/integrate/cubature/cubature_verification.h"
+#include "montelux/mc/integrate/evaluator.h"
 #include "montelux/mc/stats/moments.h"
 
 namespace montelux {
@@ -107,28 +110,25 @@ TEST(CubatureConfirmation, IsAskedForAgainWhenThereAreManyMoreRegions) {
     EXPECT_TRUE(confirm(strips(64)));
 }
 
-// Integrals of the hard bank (bench/hard), each with a singular line elsewhere: where it is close to a face, all
-// regions along it have errors that are too small. The number of those that are more than four errors off.
-int silent_claims(std::uint64_t seeds) {
-    int silent = 0;
-    for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-        const double at = 0.20003 + 0.6 * static_cast<double>(seed) / static_cast<double>(seeds);
-        const Integrand logarithm(
-            [=](std::span<const double> x) { return -std::log(std::abs(x[0] - at)) * 2 * x[1]; });
-        const double exact = 1 - at * std::log(at) - (1 - at) * std::log(1 - at);
-        const IntegrationResult r =
-            integrate(logarithm, Domain::unit_cube(2), Cubature{},
-                      {.relative_error = 1e-4, .evaluations = 3'000'000}, {.seed = seed, .threads = 1});
-        silent += r.converged() && std::abs(r.value[0] - exact) > 4 * r.standard_error[0];
-    }
-    return silent;
-}
-
-TEST(CubatureConfirmation, FindsErrorsThatAreTooSmallInManyRegions) { EXPECT_LE(silent_claims(1500), 10); }
-
-// Without the confirmation 71, with it 24: such a line shows in few of the regions that are halved.
-TEST(CubatureConfirmationSlowTest, FindsErrorsThatAreTooSmallInManyRegions) {
-    EXPECT_LE(silent_claims(6000), 40);
+TEST(CubatureConfirmation, TotalsGrowByTheFactor) {
+    const CubatureRegions regions = strips(64);
+    const Evaluator evaluator([](std::span<const double>) { return 1.0; }, Domain::unit_cube(2));
+    const CubatureVerification verification({evaluator}, 0);
+    const auto error_after = [&](double movement) {
+        CubatureConfirmation confirmation(1);
+        const std::vector<double> scale{1.0}, claimed{1.28}; // 32 regions of 0.01, and 32 of 0.03
+        const std::vector<std::size_t> chosen = confirmation.choose(regions, scale, 64 * 64, 1);
+        CubatureRegions halves(2, 1);
+        for (const std::size_t r : chosen) halves.add_halves(regions, r);
+        for (std::size_t i = 0; i < halves.count(); ++i) halves.value(i)[0] = 0.5 + 0.5 * movement / 64;
+        confirmation.compare(regions, chosen, halves, claimed);
+        CubatureTotals totals(1);
+        totals.add_up(regions, verification, confirmation, 1000);
+        return totals.error()[0];
+    };
+    const double honest = error_after(0);
+    EXPECT_GT(honest, 0);
+    EXPECT_NEAR(error_after(2.56), 4 * honest, 1e-9 * honest); // twice the claim, and halves have errors too
 }
 
 } // namespace
