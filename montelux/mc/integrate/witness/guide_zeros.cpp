@@ -1,6 +1,7 @@
 #include "montelux/mc/integrate/witness/guide_zeros.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -17,7 +18,8 @@ constexpr std::size_t scattered = 256, most_zeros = 8, most_variables = 8;
 constexpr double apart = 0.1;        // of the cube's width: between starts
 constexpr double of_ordinary = 1e-3; // of the median at scattered points: what counts as zero
 constexpr double same_zero = 1e-9, at_face = 1e-5;
-constexpr double inside = 1e-3; // distance from the opposite face, where a climb goes on
+constexpr double inside = 1e-3;                      // distance from the opposite face, where a climb goes on
+constexpr double nearest = 1e-12, same_point = 1e-9; // to faces, and of two points there
 
 // |guide| at points of the cube; infinite where it is not finite.
 std::vector<double> sizes_at(const Integrand::BatchFunction& guide, const Domain& domain,
@@ -64,11 +66,8 @@ class ZeroSearch {
             if (std::ranges::any_of(starts, [&](const auto& s) { return distance(s, at) < apart; })) continue;
             starts.push_back(at);
             std::vector<double> zero = climb_to_zero(guide, domain_, std::move(at));
-            if (is_at_face(zero)) { // a sphere goes on where its azimuth ends
-                for (double& u : zero) u = u < at_face ? 1 - inside : u > 1 - at_face ? inside : u;
-                zero = climb_to_zero(guide, domain_, std::move(zero));
-                if (is_at_face(zero)) continue;
-            }
+            if (goes_on_behind(zero)) zero = climb_to_zero(guide, domain_, std::move(zero));
+            if (is_at_face(zero)) continue;
             PointBuffer there(1, n_);
             for (int d = 0; d < n_; ++d) there(0, d) = zero[static_cast<std::size_t>(d)];
             if (!(sizes_at(guide, domain_, there)[0] < of_ordinary * ordinary)) continue;
@@ -80,6 +79,29 @@ class ZeroSearch {
   private:
     static bool is_at_face(const std::vector<double>& zero) {
         return std::ranges::any_of(zero, [](double u) { return u < at_face || u > 1 - at_face; });
+    }
+
+    // Moves a point at a face behind the opposite one, if that is the same place: where a sphere's azimuth begins.
+    bool goes_on_behind(std::vector<double>& zero) const {
+        bool moved = false;
+        for (std::size_t d = 0; d < zero.size(); ++d) {
+            if (!(zero[d] < at_face || zero[d] > 1 - at_face)) continue;
+            PointBuffer faces(2, n_), x(2, domain_.dimensions());
+            for (std::size_t e = 0; e < zero.size(); ++e)
+                for (std::size_t i = 0; i < 2; ++i)
+                    faces(i, static_cast<int>(e)) = e != d ? zero[e] : i == 0 ? nearest : 1 - nearest;
+            std::array<double, 2> volumes{1, 1};
+            domain_.map(faces, x, volumes);
+            bool same = true;
+            for (int e = 0; e < domain_.dimensions(); ++e) {
+                const double a = x.view()(0, e), b = x.view()(1, e);
+                same = same && std::abs(a - b) <= same_point * (1 + std::abs(a));
+            }
+            if (!same) continue;
+            zero[d] = zero[d] < at_face ? 1 - inside : inside;
+            moved = true;
+        }
+        return moved;
     }
 
     // On which variables the guide depends: whether it changes where one has another point's value.

@@ -19,7 +19,7 @@ struct GuideZero {
 
 // Places inside of the cube where a guide is zero, up to eight of each, each place once: climbs log(1/|guide|) from
 // scattered points, where the guide has a slope even if the integrand has underflowed. A climb that ends at a face goes
-// on at the opposite one. Domains of up to eight variables; of others none. `seed`: of the scattered points.
+// on at the opposite one where that is the same place. Domains of up to eight variables; of others none. `seed`: of the scattered points.
 std::vector<GuideZero> guide_zeros(std::span<const Integrand::BatchFunction> guides, const Domain& domain,
                                    std::uint64_t seed);
 
