@@ -175,14 +175,14 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         if (unresolved > tolerance) {
             const std::string pole =
                 unresolved == at_ends
-                    ? "an end"
+                    ? "an end or a pole"
                     : "the peak or pole at " + place_text(evaluator_.domain(), examined_[c].u).substr(5);
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than doubles can tell", unresolved,
                           pole.c_str());
             tally.warnings.emplace_back(text.data());
-            least[c] += unresolved;
         }
+        if (unresolved > tally.standard_error[c]) least[c] += unresolved;
         if (!tally.statistical) continue;
         const auto [missed, at] = missed_of[c];
         least[c] = std::hypot(least[c], missed);

@@ -31,6 +31,7 @@ constexpr double outstanding = 16;    // times the median of the look
 constexpr std::size_t most_peaks = 3, more_corners = 8;
 constexpr std::size_t most_followed = 3; // variables in which ridges are followed to the ends
 constexpr double same_root = 0.05;       // of the distance between two
+constexpr double same_pole = 0x1p-20;    // of the cube's width: digits are lost closer to it
 constexpr double least_followed = 1e-4;  // of a ridge's mass
 constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 
@@ -101,14 +102,19 @@ class Look {
         refine(paths, walked, rows, volumes);
         if (!tests || !look_.divergence.empty()) return;
         for (std::size_t p = 0; p < walked; ++p)
-            for (std::size_t c = 0; c < components(); ++c)
-                if (is_suspicious(paths[p], rows, p * ladder.size(), c)) {
-                    if (!is_negligible(paths[p], rows, p * ladder.size(), c) && diverges(paths[p], c)) {
-                        look_.divergence = place_of(paths[p]);
-                        return;
-                    }
-                    if (paths[p].codimension() == 1) note_unresolved(paths[p], rows, p * ladder.size(), c);
+            for (std::size_t c = 0; c < components(); ++c) {
+                const std::size_t first = p * ladder.size();
+                const bool suspicious_shells = is_suspicious(paths[p], rows, first, c);
+                if (suspicious_shells && !is_negligible(paths[p], rows, first, c) && diverges(paths[p], c)) {
+                    look_.divergence = place_of(paths[p]);
+                    return;
                 }
+                if (paths[p].codimension() != 1) continue;
+                if (grows_until_zero(rows, first, c))
+                    note_lost_digits(paths[p], c);
+                else if (suspicious_shells)
+                    note_unresolved(paths[p], rows, first, c);
+            }
         for (std::size_t p = 0; p < walked; ++p) note_slow(paths[p], rows, p * ladder.size());
     }
 
@@ -197,23 +203,72 @@ class Look {
         const double beyond = goes_to_infinity(path)   ? mass_beyond(path, c, to)
                               : fall > 0 && fall < 0.9 ? 1 / fall
                                                        : 0;
-        const double unresolved = inner * path.reach[0] * off_grid * beyond;
-        if (!(unresolved > 0)) return;
+        add_unresolved(path, c, inner * beyond);
+    }
+
+    // Whether a component grows along a ladder until it is zero.
+    static bool grows_until_zero(const std::vector<std::vector<double>>& rows, std::size_t first,
+                                 std::size_t c) {
+        const std::size_t last = last_shell(rows, first, c);
+        return last + 1 < ladder.size() &&
+               std::abs(rows[first + last][c]) > std::abs(rows[first + last - 1][c]);
+    }
+
+    // Notes what lies where values are rounded to zero.
+    void note_lost_digits(const LadderPath& path, std::size_t c) {
+        if (!goes_to_infinity(path))
+            add_unresolved(path, c, mass_of_lost_digits(values_along(path, c), path.finest()));
+    }
+
+    // Adds what lies at one side of a place, once. `mass`: in units of the distance at exponent 0.
+    void add_unresolved(const LadderPath& path, std::size_t c, double mass) {
+        const auto is_same = [&](const std::pair<LadderPath, std::size_t>& other) {
+            for (std::size_t d = 0; d < n_; ++d)
+                if (path.side[d] != other.first.side[d] ||
+                    (path.side[d] != 0 && std::abs(path.anchors[d].u - other.first.anchors[d].u) > same_pole))
+                    return false;
+            return c == other.second;
+        };
+        for (std::size_t d = 0; d < n_; ++d)
+            if (path.side[d] != 0) mass *= path.reach[d] * off_grid;
+        if (!(mass > 0) || std::ranges::any_of(added_, is_same)) return;
+        added_.emplace_back(path, c);
         look_.unresolved.resize(components(), 0.0);
-        look_.unresolved[c] += unresolved;
+        look_.unresolved[c] += mass;
+    }
+
+    // The last shell of a ladder where a component is not zero; the second one if that is zero, too.
+    static std::size_t last_shell(const std::vector<std::vector<double>>& rows, std::size_t first,
+                                  std::size_t c) {
+        std::size_t last = ladder.size() - 1;
+        while (last > 1 && rows[first + last][c] == 0) --last;
+        return last;
+    }
+
+    struct LastShells {
+        std::array<double, 4> masses; // the last one first; zero where no shell but the first one has any
+        std::array<std::size_t, 2> innermost;
+    };
+    LastShells last_shells(const LadderPath& path, const std::vector<std::vector<double>>& rows,
+                           std::size_t first, std::size_t c) const {
+        const double finest = std::min(path.finest(), ladder.back());
+        const std::size_t last = last_shell(rows, first, c);
+        LastShells shells{{}, {last, last - 1}};
+        if (rows[first + last][c] == 0) return shells;
+        for (std::size_t j = 0; j < shells.masses.size(); ++j) {
+            const std::size_t i = std::max(last, j) - j;
+            const double g = std::abs(rows[first + i][c]);
+            shells.masses[j] =
+                std::isnan(g) ? 0 : g * std::exp2(-path.codimension() * ladder[i] * finest / ladder.back());
+        }
+        return shells;
     }
 
     bool is_suspicious(const LadderPath& path, const std::vector<std::vector<double>>& rows,
                        std::size_t first, std::size_t c) const {
-        const double finest = std::min(path.finest(), ladder.back());
-        auto mass = [&](std::size_t i) {
-            const double g = std::abs(rows[first + i][c]);
-            return std::isnan(g) ? 0
-                                 : g * std::exp2(-path.codimension() * ladder[i] * finest / ladder.back());
-        };
-        const double inner = std::max(mass(4), mass(5)), outer = std::max(mass(2), mass(3));
-        return inner > 0 &&
-               (std::isinf(inner) || inner >= suspicious * outer || mass(5) >= constant * mass(4));
+        const auto [last, before, farther, farthest] = last_shells(path, rows, first, c).masses;
+        const double inner = std::max(last, before), outer = std::max(farther, farthest);
+        return inner > 0 && (std::isinf(inner) || inner >= suspicious * outer || last >= constant * before);
     }
 
     // Whether all shells like the innermost ones hold less than the rounding of what was seen elsewhere.
@@ -221,7 +276,7 @@ class Look {
                        std::size_t first, std::size_t c) const {
         const double finest = std::min(path.finest(), ladder.back());
         double inner = 0, most = 0;
-        for (std::size_t i : {4, 5})
+        for (std::size_t i : last_shells(path, rows, first, c).innermost)
             inner = std::max(inner, std::abs(rows[first + i][c]) *
                                         path.volume(ladder[i] * finest / ladder.back(), paths_.widths(path)));
         for (const Witness& w : look_.witnesses) most = std::max(most, std::abs(w.value[c]) * w.volume);
@@ -319,14 +374,17 @@ class Look {
             if (const double u = path.anchors[d].u; path.side[d] != 0 && u != 0 && u != 1)
                 path.reach[d] = std::min({path.reach[d], u, 1 - u});
         if (path.finest() < least_resolved) return false;
-        const ShellValues values = [&](std::span<const double> exponents) {
+        return masses_diverge(values_along(path, c), path.finest(), path.codimension());
+    }
+
+    ShellValues values_along(const LadderPath& path, std::size_t c) {
+        return [this, path, c](std::span<const double> exponents) {
             std::vector<Point> points;
             for (double k : exponents) points.push_back(path.at(k));
             std::vector<double> g;
             for (const auto& row : raw_(points)) g.push_back(std::abs(row[c]));
             return g;
         };
-        return masses_diverge(values, path.finest(), path.codimension());
     }
 
     std::string place_of(const LadderPath& path) const {
@@ -445,7 +503,7 @@ class Look {
         }
     }
 
-    void find_ridge(const Integrand::BatchFunction& guide, std::vector<Point> zeros) {
+    void find_ridge(const Integrand::BatchFunction& guide, std::vector<Point> zeros, bool beside = false) {
         const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
         // The nearest pair: a climb from between remote points of a curve may lead anywhere.
         const std::vector<Link> tree = tree_of(zeros);
@@ -462,7 +520,11 @@ class Look {
         Witness top{zeros.back(), rows.back()};
         const double height = size(top.value), ordinary = outstanding * median_size();
         measure(raw_, top, magnitude);
-        if (!(height > 0) || is_rounding(top) || is_valley(raw_, top, magnitude)) return;
+        if (is_rounding(top)) return;
+        if (!(height > 0) || is_valley(raw_, top, magnitude)) {
+            if (!beside) find_ridges_beside(guide, top, zeros);
+            return;
+        }
         double length = 0;
         std::vector<std::size_t> high;
         for (const Link& link : tree)
@@ -477,6 +539,26 @@ class Look {
                 ++of_ridges_;
             }
         if (n_ <= most_followed) follow(guide, top, least_followed * height * top.volume);
+    }
+
+    // An integrand that vanishes where a guide does may have ridges on both sides: there the guide has the value that it
+    // has at the integrand's top beside the valley, or its negative.
+    void find_ridges_beside(const Integrand::BatchFunction& guide, const Witness& valley,
+                            const std::vector<Point>& zeros) {
+        const Domain& domain = raw_.evaluator().domain();
+        if (!affordable(40 * n_)) return;
+        const Witness top = climb(raw_, valley, [&](const std::vector<double>& row) { return size(row); });
+        if (!(size(top.value) > median_size())) return;
+        const double level = guide_at(guide, domain, top.u);
+        for (double value : {level, -level}) {
+            const Integrand::BatchFunction beside = [&guide, value](const PointBatch& x, ValueBatch y) {
+                guide(x, y);
+                for (std::size_t i = 0; i < x.count(); ++i) y(i, 0) -= value;
+            };
+            std::vector<Point> moved;
+            for (const Point& zero : zeros) moved.push_back(climb_to_zero(beside, domain, zero));
+            if (affordable(40 * n_)) find_ridge(beside, std::move(moved), true);
+        }
     }
 
     // Follows a ridge to the ends of the variables, those first where its first part holds most.
@@ -536,6 +618,8 @@ class Look {
     std::vector<std::size_t> ordinary_; // witnesses
     // Witnesses close to a place inside, far above the beginning of their ladder.
     std::vector<std::size_t> deep_;
+    std::vector<std::pair<LadderPath, std::size_t>>
+        added_;                 // ways to, and components of, what is not resolved
     std::size_t of_ridges_ = 0; // peaks on ridges,
     std::size_t flanked_ = 0;   // and those whose flanks were seen
     FirstLook look_;

@@ -18,8 +18,8 @@ struct FirstLook {
     // Tops that stand far above the others. Along each variable |g| stays above a half of its value there within
     // `volume`, a box; where variables are correlated the box is smaller than the peak.
     std::vector<Witness> peaks;
-    // Part of the integral of |g_c| that lies closer to an end of one variable, or farther out, than doubles resolve; one for
-    // each component, or none.
+    // Part of the integral of |g_c| that lies closer to an end or a pole of one variable, or farther out, than doubles
+    // resolve; one for each component, or none.
     std::vector<double> unresolved;
     // Ways to ends along which |g| grows fast, though its mass falls.
     std::vector<SlowShells> slow;

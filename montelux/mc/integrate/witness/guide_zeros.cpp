@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <utility>
 
 #include "montelux/mc/integrate/adaptive/mode_search.h"
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/random/hash.h"
 
@@ -21,19 +21,24 @@ constexpr double same_zero = 1e-9, at_face = 1e-5;
 constexpr double inside = 1e-3;                      // distance from the opposite face, where a climb goes on
 constexpr double nearest = 1e-12, same_point = 1e-9; // to faces, and of two points there
 
-// |guide| at points of the cube; infinite where it is not finite.
-std::vector<double> sizes_at(const Integrand::BatchFunction& guide, const Domain& domain,
-                             const PointBatch& u) {
+// Values of a guide at points of the cube.
+std::vector<double> values_at(const Integrand::BatchFunction& guide, const Domain& domain,
+                              const PointBatch& u) {
     PointBuffer x(u.count(), domain.dimensions());
     std::vector<double> volumes(u.count(), 1.0);
     domain.map(u, x, volumes);
     ValueBuffer g(u.count(), 1);
     guide(x, g);
-    std::vector<double> sizes(u.count());
-    for (std::size_t i = 0; i < sizes.size(); ++i) {
-        const double value = std::abs(std::as_const(g)(i, 0));
-        sizes[i] = std::isfinite(value) ? value : std::numeric_limits<double>::infinity();
-    }
+    std::vector<double> values(u.count());
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::as_const(g)(i, 0);
+    return values;
+}
+
+// |guide| at points of the cube; infinite where it is not finite.
+std::vector<double> sizes_at(const Integrand::BatchFunction& guide, const Domain& domain,
+                             const PointBatch& u) {
+    std::vector<double> sizes = values_at(guide, domain, u);
+    for (double& size : sizes) size = std::isfinite(size) ? std::abs(size) : infinity;
     return sizes;
 }
 
@@ -68,9 +73,7 @@ class ZeroSearch {
             std::vector<double> zero = climb_to_zero(guide, domain_, std::move(at));
             if (goes_on_behind(zero)) zero = climb_to_zero(guide, domain_, std::move(zero));
             if (is_at_face(zero)) continue;
-            PointBuffer there(1, n_);
-            for (int d = 0; d < n_; ++d) there(0, d) = zero[static_cast<std::size_t>(d)];
-            if (!(sizes_at(guide, domain_, there)[0] < of_ordinary * ordinary)) continue;
+            if (!(std::abs(guide_at(guide, domain_, zero)) < of_ordinary * ordinary)) continue;
             const auto is_zero = [&](const GuideZero& other) { return distance(other.u, zero) < same_zero; };
             if (std::ranges::none_of(zeros, is_zero)) zeros.push_back({zero, index});
         }
@@ -133,6 +136,12 @@ std::vector<GuideZero> guide_zeros(std::span<const Integrand::BatchFunction> gui
     ZeroSearch search(domain, seed);
     for (std::size_t i = 0; i < guides.size(); ++i) search(guides[i], i, zeros);
     return zeros;
+}
+
+double guide_at(const Integrand::BatchFunction& guide, const Domain& domain, std::span<const double> u) {
+    PointBuffer there(1, static_cast<int>(u.size()));
+    for (std::size_t d = 0; d < u.size(); ++d) there(0, static_cast<int>(d)) = u[d];
+    return values_at(guide, domain, there)[0];
 }
 
 std::vector<double> climb_to_zero(const Integrand::BatchFunction& guide, const Domain& domain,

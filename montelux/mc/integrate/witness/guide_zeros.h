@@ -19,9 +19,13 @@ struct GuideZero {
 
 // Places inside of the cube where a guide is zero, up to eight of each, each place once: climbs log(1/|guide|) from
 // scattered points, where the guide has a slope even if the integrand has underflowed. A climb that ends at a face goes
-// on at the opposite one where that is the same place. Domains of up to eight variables; of others none. `seed`: of the scattered points.
+// on at the opposite one where that is the same place. Domains of up to eight variables; of others none. `seed`: of the
+// scattered points.
 std::vector<GuideZero> guide_zeros(std::span<const Integrand::BatchFunction> guides, const Domain& domain,
                                    std::uint64_t seed);
+
+// A guide's value at a point of the cube.
+double guide_at(const Integrand::BatchFunction& guide, const Domain& domain, std::span<const double> u);
 
 // The place of a guide's zero to which a climb from u leads, along all variables or all but the fixed one.
 std::vector<double> climb_to_zero(const Integrand::BatchFunction& guide, const Domain& domain,

@@ -19,6 +19,11 @@ constexpr double steady_ratio = 0.25, constant_ratio = 0.98;
 // Growth of |g| over three octaves towards a pole; four times that for each variable more.
 constexpr double least_growth = 3;
 constexpr double coarsest = 6; // least exponent of the innermost shells
+constexpr double of_digits =
+    64; // exponents of zeros by cancellation; farther on intermediate results overflow
+// Part of the exponent at which values are rounded to zero where they are still precise: to 2^(-53 (1 - 0.8)). Second
+// differences of log2 |g| over sixteenths of an octave: quanta of rounding give steps of one and less, powers none.
+constexpr double precise = 0.8, rough = 0.2, smooth = 0.05;
 
 std::vector<double> exponents(double from, double to) {
     std::vector<double> k;
@@ -44,16 +49,48 @@ double finest_exponent(const Domain& domain, std::size_t d, double u) {
 
 namespace {
 
-// The largest exponent up to `finest` whose value is a number other than zero, for values that have none beyond it.
-double last_value(const ShellValues& values, double finest) {
-    double known = coarsest, unknown = finest;
+// The largest exponent up to `finest` whose value is a number other than zero, and the value beyond it, for values that
+// have none from there on.
+struct LastValue {
+    double exponent, beyond;
+};
+LastValue last_value(const ShellValues& values, double finest) {
+    double known = coarsest, unknown = finest, beyond = 0;
     constexpr int bisections = 12;
     for (int i = 0; i < bisections; ++i) {
         const std::array<double, 1> middle{0.5 * (known + unknown)};
         const double g = values(middle)[0];
-        (g > 0 && std::isfinite(g) ? known : unknown) = middle[0];
+        if (g > 0 && std::isfinite(g)) {
+            known = middle[0];
+        } else {
+            unknown = middle[0];
+            beyond = g;
+        }
     }
-    return known;
+    return {known, beyond};
+}
+
+// Roughness of log2 |g| over the two octaves up to an exponent, since the last quantum of a rounded value may fill one:
+// the largest second difference, of that sign which has the smaller one. Steep slopes have one sign alone.
+double roughness(const ShellValues& values, double exponent) {
+    constexpr std::size_t points = 33;
+    std::vector<double> k(points);
+    for (std::size_t i = 0; i < points; ++i)
+        k[i] = exponent - 2 + static_cast<double>(2 * i) / static_cast<double>(points - 1);
+    const std::vector<double> g = values(k);
+    double up = 0, down = 0;
+    for (std::size_t i = 1; i + 1 < points; ++i) {
+        const double difference = std::log2(g[i - 1]) - 2 * std::log2(g[i]) + std::log2(g[i + 1]);
+        up = std::max(up, difference);
+        down = std::max(down, -difference);
+    }
+    return std::min(up, down);
+}
+
+// Whether cancellation rounds values to zero, as 1 - cos r: they lose digits octave by octave, so that the last octaves
+// are rough where those at some distance are smooth. What ends in truth is as rough as before.
+bool loses_digits(const ShellValues& values, double last) {
+    return roughness(values, last) > rough && roughness(values, precise * last) < smooth;
 }
 
 bool masses_diverge_until(const ShellValues& values, double finest, int codimension, bool may_be_rounded) {
@@ -75,9 +112,13 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
         else if (i >= shells / 3)
             before += mass(g_inner[i], inner[i]);
     }
-    // Infinite, zero or no number, by overflow or rounding or in truth: the shells up to there tell.
-    if (rounded)
-        return may_be_rounded && masses_diverge_until(values, last_value(values, finest), codimension, false);
+    // Infinite, zero or no number, by overflow or rounding: the shells up to there tell.
+    if (rounded) {
+        if (!may_be_rounded) return false;
+        const auto [last, beyond] = last_value(values, finest);
+        if (beyond != 0 || last > of_digits) return masses_diverge_until(values, last, codimension, false);
+        return loses_digits(values, last) && masses_diverge_until(values, precise * last, codimension, false);
+    }
     // Values that no longer grow are those of a narrow peak. Over three octaves those of a pole grow by 8^codimension or
     // more, but for oscillations.
     const double last = std::max(g_inner[shells - 1], g_inner[shells - 2]),
@@ -90,6 +131,15 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
 }
 
 } // namespace
+
+double mass_of_lost_digits(const ShellValues& values, double finest) {
+    const auto [last, beyond] = last_value(values, finest);
+    if (beyond != 0 || last > of_digits || !loses_digits(values, last)) return 0;
+    const std::array<double, 2> k{0.5 * precise * last, precise * last};
+    const std::vector<double> g = values(k);
+    const double fall = std::log2(g[0] / g[1]) / (k[1] - k[0]) + 1; // of masses, for each octave
+    return fall > 0 ? g[1] * std::exp2(-k[1] - fall * (last - k[1])) / fall : 0;
+}
 
 bool masses_diverge(const ShellValues& values, double finest, int codimension) {
     return masses_diverge_until(values, finest, codimension, true);

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -169,6 +170,20 @@ TEST(FirstLook, TellsDivergenceByOverflowAndBeforeValuesEnd) {
     EXPECT_TRUE(look_at(corner, Domain({{0, 3}, {0, 3}, {0, 3}})).divergence.empty());
 }
 
+// Numerators that are rounded to zero before the innermost shells, and values that end there in truth.
+TEST(FirstLook, TellsDivergenceBeforeNumeratorsAreRounded) {
+    const Domain unit = Domain::interval(0, 1);
+    const auto cosine = [](double x) { return (1 - std::cos(x)) / (x * x * x); };
+    const auto sine = [](double x) { return (x - std::sin(x)) / std::pow(x, 4); };
+    EXPECT_EQ(look_at(cosine, unit).divergence, "x -> 0");
+    EXPECT_EQ(look_at(sine, unit).divergence, "x -> 0");
+    EXPECT_EQ(look_at([=](double x) { return cosine(std::abs(x - 0.3)); }, unit, {{0.3}}).divergence,
+              "x -> 0.3");
+    EXPECT_EQ(look_at([=](double x) { return x * cosine(x); }, unit).divergence, "");
+    for (double cut : {1e-3, 1e-6, 1e-9, 1e-12})
+        EXPECT_EQ(look_at([=](double x) { return x > cut ? 1 / x : 0; }, unit).divergence, "") << cut;
+}
+
 // Large scales are no divergence, and what lies beyond the cube's points is measured.
 TEST(FirstLook, MeasuresWhatLiesFartherOutThanPoints) {
     for (double scale : {1e14, 1e20, 1e40}) {
@@ -279,6 +294,35 @@ TEST(FirstLook, MeasuresRidgesOfGuides) {
         for (const Witness& peak : look.peaks) sum += peak.value[0] * peak.volume;
         EXPECT_GT(sum, 1) << seed;
         EXPECT_LT(sum, 12) << seed;
+    }
+}
+
+// An integrand that vanishes on a curve, with a ridge on each side of it: both are followed in both directions.
+TEST(FirstLook, FollowsRidgesBesideTheZerosOfGuides) {
+    const auto curve = [](std::span<const double> x) { return x[1] - x[0] * x[0]; };
+    const Integrand guide(curve);
+    const std::vector<Integrand::BatchFunction> guides{
+        [&](const PointBatch& x, ValueBatch y) { guide(x, y); }};
+    const auto two_ridges = [&](std::span<const double> x) {
+        const double square = std::pow(curve(x), 2);
+        return square * std::exp(-square) * std::pow(1 + x[0] * x[0], -2);
+    };
+    const Domain plane({{-infinity, infinity}, {-infinity, infinity}});
+    const Evaluator evaluator(Integrand(two_ridges), plane);
+    for (std::uint64_t seed = 0; seed < 10; ++seed) {
+        const FirstLook look = first_look(evaluator, {.guides = guides, .seed = seed});
+        EXPECT_EQ(look.divergence, "") << seed;
+        std::array<int, 4> seen{}; // beyond |x| = 3: above and below of the curve, on both sides
+        for (const Witness& w : look.witnesses) {
+            PointBuffer u(1, 2), x(1, 2);
+            for (int d = 0; d < 2; ++d) u(0, d) = w.u[static_cast<std::size_t>(d)];
+            std::array<double, 1> volume{1};
+            plane.map(u, x, volume);
+            const std::array<double, 2> at{x.view()(0, 0), x.view()(0, 1)};
+            if (std::abs(at[0]) > 3 && std::abs(std::abs(curve(at)) - 1) < 0.5)
+                ++seen[(at[0] > 0 ? 2u : 0u) + (curve(at) > 0 ? 1u : 0u)];
+        }
+        for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_GE(seen[i], 3) << seed << " " << i;
     }
 }
 

@@ -47,6 +47,44 @@ TEST(Shells, RoundingDoesNotDecide) {
     EXPECT_FALSE(masses_diverge(of([](double r) { return r < 1e-9 ? 1.0 : 0.0; }), 46, 1));
 }
 
+// Numerators that cancellation rounds to zero long before the finest shell, beside values that end there in truth.
+TEST(Shells, DigitsLostByCancellationAreToldFromEnds) {
+    const auto cosine = [](double r) { return 1 - std::cos(r); };
+    const auto sine = [](double r) { return r - std::sin(r); };
+    const auto square_root = [](double r) { return std::sqrt(1 + r) - 1; };
+    for (double finest : {46.0, finest_at_origin}) {
+        EXPECT_TRUE(masses_diverge(of([=](double r) { return cosine(r) / std::pow(r, 3); }), finest, 1));
+        EXPECT_FALSE(masses_diverge(of([=](double r) { return cosine(r) / std::pow(r, 2.5); }), finest, 1));
+        EXPECT_TRUE(masses_diverge(of([=](double r) { return sine(r) / std::pow(r, 4); }), finest, 1));
+        EXPECT_FALSE(masses_diverge(of([=](double r) { return sine(r) / std::pow(r, 3.5); }), finest, 1));
+        EXPECT_TRUE(masses_diverge(of([=](double r) { return cosine(r) / std::pow(r, 4); }), finest, 2));
+        EXPECT_FALSE(masses_diverge(of([=](double r) { return cosine(r) / std::pow(r, 3.5); }), finest, 2));
+        for (double cut : {1e-3, 1e-6, 1e-9, 1e-12}) {
+            const auto up_to = [=](auto f) { return of([=](double r) { return r > cut ? f(r) / r : 0; }); };
+            EXPECT_FALSE(masses_diverge(up_to([](double) { return 1.0; }), finest, 1)) << cut;
+            EXPECT_FALSE(masses_diverge(up_to([](double r) { return std::abs(std::sin(1 / r)); }), finest, 1))
+                << cut;
+            EXPECT_FALSE(masses_diverge(up_to([](double r) { return std::log1p(1 / r); }), finest, 1)) << cut;
+        }
+    }
+    EXPECT_TRUE(masses_diverge(of([=](double r) { return square_root(r) / (r * r); }), finest_at_origin, 1));
+    EXPECT_FALSE(
+        masses_diverge(of([=](double r) { return square_root(r) / std::pow(r, 1.8); }), finest_at_origin, 1));
+}
+
+// Below r = 2^-26.5 the cosine is one: 1 - cos r over r^p misses 2^(-26.5 (3 - p)) / (2 (3 - p)) there.
+TEST(Shells, MassOfLostDigits) {
+    for (double power : {2.2, 2.5, 2.8})
+        for (double finest : {46.0, finest_at_origin}) {
+            const ShellValues g = of([=](double r) { return (1 - std::cos(r)) / std::pow(r, power); });
+            const double missing = std::exp2(-26.5 * (3 - power)) / (2 * (3 - power));
+            EXPECT_NEAR(mass_of_lost_digits(g, finest) / missing, 1, 0.1) << power;
+        }
+    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return r > 1e-6 ? 1 / std::sqrt(r) : 0; }), 46), 0);
+    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return 1 / std::sqrt(r); }), 46), 0);
+    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return (1 - std::cos(r)) / std::pow(r, 3.5); }), 46), 0);
+}
+
 // A peak a few octaves wider than the finest shell: masses grow up to its width, and no pole's values stay as they are.
 TEST(Shells, NarrowPeaksAreNoPoles) {
     for (double width : {0x1p-36, 0x1p-40, 0x1p-43})
