@@ -6,32 +6,27 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <numbers>
 #include <numeric>
 #include <utility>
 
 #include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/witness/guide_zeros.h"
+#include "montelux/mc/integrate/witness/ladder_masses.h"
 #include "montelux/mc/integrate/witness/ladder_path.h"
 #include "montelux/mc/integrate/witness/peak.h"
 #include "montelux/mc/integrate/witness/raw_values.h"
 #include "montelux/mc/integrate/witness/ridge.h"
-#include "montelux/mc/integrate/witness/shells.h"
 
 namespace montelux {
 namespace {
 
 using Point = std::vector<double>;
 
-constexpr double least_resolved = 16; // exponent of the finest shell that tells of divergence inside
-constexpr double suspicious = 0.2;    // of the inner shells' masses beside the outer ones',
-constexpr double constant = 0.9;      // or of the innermost one beside the one before
-constexpr double matters = 1e-3;      // of the greatest mass of a shell: a difference between two
-constexpr double outstanding = 16;    // times the median of the look
+constexpr double matters = 1e-3;   // of the greatest mass of a shell: a difference between two
+constexpr double outstanding = 16; // times the median of the look
 constexpr std::size_t most_peaks = 3, more_corners = 8;
 constexpr std::size_t most_followed = 3; // variables in which ridges are followed to the ends
 constexpr double same_root = 0.05;       // of the distance between two
-constexpr double same_pole = 0x1p-20;    // of the cube's width: digits are lost closer to it
 constexpr double least_followed = 1e-4;  // of a ridge's mass
 constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 
@@ -41,7 +36,7 @@ class Look {
         : raw_(evaluator), settings_(settings), n_(static_cast<std::size_t>(evaluator.dimensions())),
           zeros_(guide_zeros(settings.guides, evaluator.domain(), settings.seed)),
           paths_(evaluator.domain(), n_, settings.landmarks, places_of(zeros_), settings.seed),
-          largest_(static_cast<std::size_t>(evaluator.components()), 0.0) {}
+          masses_(raw_, paths_), largest_(static_cast<std::size_t>(evaluator.components()), 0.0) {}
 
     FirstLook operator()() {
         const auto begin = std::chrono::steady_clock::now();
@@ -61,6 +56,7 @@ class Look {
         std::vector<std::size_t> all(look_.witnesses.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         find_peaks(all);
+        look_.unresolved = masses_.unresolved();
         look_.evaluations = raw_.evaluations();
         look_.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
         return std::move(look_);
@@ -103,17 +99,12 @@ class Look {
         if (!tests || !look_.divergence.empty()) return;
         for (std::size_t p = 0; p < walked; ++p)
             for (std::size_t c = 0; c < components(); ++c) {
-                const std::size_t first = p * ladder.size();
-                const bool suspicious_shells = is_suspicious(paths[p], rows, first, c);
-                if (suspicious_shells && !is_negligible(paths[p], rows, first, c) && diverges(paths[p], c)) {
+                const auto along = std::span(rows).subspan(p * ladder.size(), ladder.size());
+                if (masses_.diverge(paths[p], along, c, look_.witnesses)) {
                     look_.divergence = place_of(paths[p]);
                     return;
                 }
-                if (paths[p].codimension() != 1) continue;
-                if (grows_until_zero(rows, first, c))
-                    note_lost_digits(paths[p], c);
-                else if (suspicious_shells)
-                    note_unresolved(paths[p], rows, first, c);
+                masses_.add_unresolved(paths[p], along, c);
             }
         for (std::size_t p = 0; p < walked; ++p) note_slow(paths[p], rows, p * ladder.size());
     }
@@ -191,200 +182,11 @@ class Look {
 
     std::size_t components() const { return static_cast<std::size_t>(raw_.evaluator().components()); }
 
-    // Notes what lies beyond the finest shell: at infinity by shells farther out, else if masses fall by a power.
-    void note_unresolved(const LadderPath& path, const std::vector<std::vector<double>>& rows,
-                         std::size_t first, std::size_t c) {
-        if (path.finest() > finest_inside) return;
-        const double finest = std::min(path.finest(), ladder.back()) / ladder.back();
-        const double from = ladder[3] * finest, to = ladder[5] * finest;
-        const double outer = std::abs(rows[first + 3][c]) * std::exp2(-from);
-        const double inner = std::abs(rows[first + 5][c]) * std::exp2(-to);
-        const double fall = std::log2(outer / inner) / (to - from); // 1 - power
-        const double beyond = goes_to_infinity(path)   ? mass_beyond(path, c, to)
-                              : fall > 0 && fall < 0.9 ? 1 / fall
-                                                       : 0;
-        add_unresolved(path, c, inner * beyond);
-    }
-
-    // Whether a component grows along a ladder until it is zero.
-    static bool grows_until_zero(const std::vector<std::vector<double>>& rows, std::size_t first,
-                                 std::size_t c) {
-        const std::size_t last = last_shell(rows, first, c);
-        return last + 1 < ladder.size() &&
-               std::abs(rows[first + last][c]) > std::abs(rows[first + last - 1][c]);
-    }
-
-    // Notes what lies where values are rounded to zero.
-    void note_lost_digits(const LadderPath& path, std::size_t c) {
-        if (!goes_to_infinity(path))
-            add_unresolved(path, c, mass_of_lost_digits(values_along(path, c), path.finest()));
-    }
-
-    // Adds what lies at one side of a place, once. `mass`: in units of the distance at exponent 0.
-    void add_unresolved(const LadderPath& path, std::size_t c, double mass) {
-        const auto is_same = [&](const std::pair<LadderPath, std::size_t>& other) {
-            for (std::size_t d = 0; d < n_; ++d)
-                if (path.side[d] != other.first.side[d] ||
-                    (path.side[d] != 0 && std::abs(path.anchors[d].u - other.first.anchors[d].u) > same_pole))
-                    return false;
-            return c == other.second;
-        };
-        for (std::size_t d = 0; d < n_; ++d)
-            if (path.side[d] != 0) mass *= path.reach[d] * off_grid;
-        if (!(mass > 0) || std::ranges::any_of(added_, is_same)) return;
-        added_.emplace_back(path, c);
-        look_.unresolved.resize(components(), 0.0);
-        look_.unresolved[c] += mass;
-    }
-
-    // The last shell of a ladder where a component is not zero; the second one if that is zero, too.
-    static std::size_t last_shell(const std::vector<std::vector<double>>& rows, std::size_t first,
-                                  std::size_t c) {
-        std::size_t last = ladder.size() - 1;
-        while (last > 1 && rows[first + last][c] == 0) --last;
-        return last;
-    }
-
-    struct LastShells {
-        std::array<double, 4> masses; // the last one first; zero where no shell but the first one has any
-        std::array<std::size_t, 2> innermost;
-    };
-    LastShells last_shells(const LadderPath& path, const std::vector<std::vector<double>>& rows,
-                           std::size_t first, std::size_t c) const {
-        const double finest = std::min(path.finest(), ladder.back());
-        const std::size_t last = last_shell(rows, first, c);
-        LastShells shells{{}, {last, last - 1}};
-        if (rows[first + last][c] == 0) return shells;
-        for (std::size_t j = 0; j < shells.masses.size(); ++j) {
-            const std::size_t i = std::max(last, j) - j;
-            const double g = std::abs(rows[first + i][c]);
-            shells.masses[j] =
-                std::isnan(g) ? 0 : g * std::exp2(-path.codimension() * ladder[i] * finest / ladder.back());
-        }
-        return shells;
-    }
-
-    bool is_suspicious(const LadderPath& path, const std::vector<std::vector<double>>& rows,
-                       std::size_t first, std::size_t c) const {
-        const auto [last, before, farther, farthest] = last_shells(path, rows, first, c).masses;
-        const double inner = std::max(last, before), outer = std::max(farther, farthest);
-        return inner > 0 && (std::isinf(inner) || inner >= suspicious * outer || last >= constant * before);
-    }
-
-    // Whether all shells like the innermost ones hold less than the rounding of what was seen elsewhere.
-    bool is_negligible(const LadderPath& path, const std::vector<std::vector<double>>& rows,
-                       std::size_t first, std::size_t c) const {
-        const double finest = std::min(path.finest(), ladder.back());
-        double inner = 0, most = 0;
-        for (std::size_t i : last_shells(path, rows, first, c).innermost)
-            inner = std::max(inner, std::abs(rows[first + i][c]) *
-                                        path.volume(ladder[i] * finest / ladder.back(), paths_.widths(path)));
-        for (const Witness& w : look_.witnesses) most = std::max(most, std::abs(w.value[c]) * w.volume);
-        return finest_at_origin * inner < std::numeric_limits<double>::epsilon() * most;
-    }
-
     // Whether no variable that moves goes to an end.
     static bool is_inside(const LadderPath& path) {
         for (std::size_t d = 0; d < path.side.size(); ++d)
             if (path.side[d] != 0 && (path.anchors[d].u == 0 || path.anchors[d].u == 1)) return false;
         return true;
-    }
-
-    // Do all variables that move go to infinity?
-    bool goes_to_infinity(const LadderPath& path) const {
-        const std::span<const Range> ranges = raw_.evaluator().domain().ranges();
-        if (ranges.empty()) return false;
-        for (std::size_t d = 0; d < n_; ++d)
-            if (path.side[d] != 0 && !(path.anchors[d].u == 0 && std::isinf(ranges[d].lower)) &&
-                !(path.anchors[d].u == 1 && std::isinf(ranges[d].upper)))
-                return false;
-        return true;
-    }
-
-    // Shells at infinity, farther out than points of the unit cube can be: |f| at distances 2^k, times the square of the
-    // volume that these have, so that masses are those of shells of width 2^-k.
-    ShellValues values_far_out(const LadderPath& path, std::size_t c) {
-        PointBuffer u(1, static_cast<int>(n_)), x(1, static_cast<int>(n_));
-        for (std::size_t d = 0; d < n_; ++d)
-            u(0, static_cast<int>(d)) = path.side[d] == 0 ? path.anchors[d].u : 0.5;
-        std::array<double, 1> volume{1};
-        raw_.evaluator().domain().map(u, x, volume);
-        return [this, path, c, x](std::span<const double> exponents) {
-            std::vector<Point> points;
-            for (double k : exponents) {
-                points.emplace_back(n_);
-                for (std::size_t d = 0; d < n_; ++d)
-                    points.back()[d] = path.side[d] == 0 ? x.view()(0, static_cast<int>(d))
-                                                         : -path.side[d] * std::exp2(path.rate(d) * k) /
-                                                               (off_grid * path.reach[d]);
-            }
-            const auto rows = raw_.at(points);
-            std::vector<double> g;
-            for (std::size_t i = 0; i < rows.size(); ++i)
-                g.push_back(std::abs(rows[i][c]) * std::exp2(2 * path.codimension() * exponents[i]));
-            return g;
-        };
-    }
-
-    bool diverges_at_infinity(const LadderPath& path, std::size_t c) {
-        const double finest = finest_at_origin / path.codimension();
-        const ShellValues values = values_far_out(path, c);
-        // Overflow: infinite from half of the way on.
-        const std::array<double, 3> far_out{0.5 * finest, 0.75 * finest, finest};
-        const std::vector<double> g = values(far_out);
-        return std::ranges::all_of(g, [](double v) { return std::isinf(v); }) ||
-               masses_diverge(values, finest, path.codimension());
-    }
-
-    // Mass that lies farther out than the shell at `finest`, in units of that shell's; 0 where that has none.
-    double mass_beyond(const LadderPath& path, std::size_t c, double finest) {
-        constexpr double step = 2;
-        std::vector<double> exponents;
-        for (double k = finest; k < finest_at_origin; k += step) exponents.push_back(k);
-        const std::vector<double> g = values_far_out(path, c)(exponents);
-        double sum = 0.5;
-        for (std::size_t i = 1; i < g.size(); ++i)
-            if (const double mass = g[i] / g[0] * std::exp2(finest - exponents[i]); !std::isnan(mass))
-                sum += mass;
-        return g[0] > 0 ? step * std::numbers::ln2 * sum : 0;
-    }
-
-    bool diverges(const LadderPath& path, std::size_t c) {
-        if (path.codimension() == 1) return diverges_along(path, c);
-        // Other directions, since a diagonal may be a ridge.
-        for (int i = 0; i < 2; ++i) {
-            LadderPath other = path;
-            paths_.vary(other);
-            if (!diverges_along(other, c)) return ridge_diverges_along(path, c);
-        }
-        return diverges_along(path, c);
-    }
-
-    bool ridge_diverges_along(const LadderPath& path, std::size_t c) {
-        constexpr double far_out = 20; // exponent
-        return goes_to_infinity(path) && diverges_along(path, c) &&
-               ridge_diverges(raw_, path.at(far_out),
-                              [c](const std::vector<double>& row) { return std::abs(row[c]); });
-    }
-
-    bool diverges_along(LadderPath path, std::size_t c) {
-        if (goes_to_infinity(path)) return diverges_at_infinity(path, c);
-        // Shells around a place inside, none of which holds an end.
-        for (std::size_t d = 0; d < n_; ++d)
-            if (const double u = path.anchors[d].u; path.side[d] != 0 && u != 0 && u != 1)
-                path.reach[d] = std::min({path.reach[d], u, 1 - u});
-        if (path.finest() < least_resolved) return false;
-        return masses_diverge(values_along(path, c), path.finest(), path.codimension());
-    }
-
-    ShellValues values_along(const LadderPath& path, std::size_t c) {
-        return [this, path, c](std::span<const double> exponents) {
-            std::vector<Point> points;
-            for (double k : exponents) points.push_back(path.at(k));
-            std::vector<double> g;
-            for (const auto& row : raw_(points)) g.push_back(std::abs(row[c]));
-            return g;
-        };
     }
 
     std::string place_of(const LadderPath& path) const {
@@ -614,12 +416,11 @@ class Look {
     std::size_t n_;
     std::vector<GuideZero> zeros_;
     LadderPaths paths_;
+    LadderMasses masses_;
     std::vector<double> largest_;       // |g| of each component
     std::vector<std::size_t> ordinary_; // witnesses
     // Witnesses close to a place inside, far above the beginning of their ladder.
     std::vector<std::size_t> deep_;
-    std::vector<std::pair<LadderPath, std::size_t>>
-        added_;                 // ways to, and components of, what is not resolved
     std::size_t of_ridges_ = 0; // peaks on ridges,
     std::size_t flanked_ = 0;   // and those whose flanks were seen
     FirstLook look_;

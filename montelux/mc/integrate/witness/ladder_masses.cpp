@@ -1,0 +1,191 @@
+#include "montelux/mc/integrate/witness/ladder_masses.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "montelux/mc/integrate/witness/ridge.h"
+
+namespace montelux {
+namespace {
+
+constexpr double least_resolved = 16; // exponent of the finest shell that tells of divergence inside
+constexpr double suspicious = 0.2;    // of the inner shells' masses beside the outer ones',
+constexpr double constant = 0.9;      // or of the innermost one beside the one before
+constexpr double same_pole = 0x1p-20; // of the cube's width: digits are lost closer to it
+
+double exponent_of(const LadderPath& path, std::size_t shell) {
+    return ladder[shell] * std::min(path.finest(), ladder.back()) / ladder.back();
+}
+
+// Same side of the same pole.
+bool is_same(const LadderPath& a, const LadderPath& b) {
+    for (std::size_t d = 0; d < a.side.size(); ++d)
+        if (a.side[d] != b.side[d] ||
+            (a.side[d] != 0 && std::abs(a.anchors[d].u - b.anchors[d].u) > same_pole))
+            return false;
+    return true;
+}
+
+} // namespace
+
+bool goes_to_infinity(const LadderPath& path, const Domain& domain) {
+    const std::span<const Range> ranges = domain.ranges();
+    if (ranges.empty()) return false;
+    for (std::size_t d = 0; d < path.side.size(); ++d)
+        if (path.side[d] != 0 && !(path.anchors[d].u == 0 && std::isinf(ranges[d].lower)) &&
+            !(path.anchors[d].u == 1 && std::isinf(ranges[d].upper)))
+            return false;
+    return true;
+}
+
+bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen) {
+    return is_suspicious(path, rows, c) && !is_negligible(path, rows, c, seen) && diverge_further(path, c);
+}
+
+void LadderMasses::add_unresolved(const LadderPath& path, Rows rows, std::size_t c) {
+    if (path.codimension() != 1) return;
+    double mass = mass_beyond_resolution(path, rows, c);
+    for (std::size_t d = 0; d < path.side.size(); ++d)
+        if (path.side[d] != 0) mass *= path.reach[d] * off_grid;
+    const auto is_added = [&](const auto& added) { return added.second == c && is_same(added.first, path); };
+    if (!(mass > 0) || std::ranges::any_of(added_, is_added)) return;
+    added_.emplace_back(path, c);
+    unresolved_.resize(rows.front().size(), 0.0);
+    unresolved_[c] += mass;
+}
+
+// In units of the distance at exponent 0: what rounding to zero loses, at infinity what shells farther out hold, else what
+// the innermost ones leave if they fall by a power.
+double LadderMasses::mass_beyond_resolution(const LadderPath& path, Rows rows, std::size_t c) {
+    const bool to_infinity = goes_to_infinity(path, raw_.evaluator().domain());
+    const std::size_t last = last_shell(rows, c);
+    if (last + 1 < ladder.size() && std::abs(rows[last][c]) > std::abs(rows[last - 1][c]))
+        return to_infinity ? 0 : mass_of_lost_digits(values_along(path, c), path.finest());
+    if (!is_suspicious(path, rows, c) || path.finest() > finest_inside) return 0;
+    const double from = exponent_of(path, 3), to = exponent_of(path, 5);
+    const double outer = std::abs(rows[3][c]) * std::exp2(-from),
+                 inner = std::abs(rows[5][c]) * std::exp2(-to);
+    if (to_infinity) return inner * mass_beyond(path, c, to);
+    const double fall = std::log2(outer / inner) / (to - from); // 1 - power
+    return fall > 0 && fall < 0.9 ? inner / fall : 0;
+}
+
+std::size_t LadderMasses::last_shell(Rows rows, std::size_t c) {
+    std::size_t last = ladder.size() - 1;
+    while (last > 1 && rows[last][c] == 0) --last;
+    return last;
+}
+
+bool LadderMasses::is_suspicious(const LadderPath& path, Rows rows, std::size_t c) const {
+    const std::size_t last = last_shell(rows, c);
+    const auto mass = [&](std::size_t before) {
+        const std::size_t i = std::max(last, before) - before;
+        const double g = std::abs(rows[i][c]);
+        return std::isnan(g) ? 0 : g * std::exp2(-path.codimension() * exponent_of(path, i));
+    };
+    const double inner = std::max(mass(0), mass(1)), outer = std::max(mass(2), mass(3));
+    return rows[last][c] != 0 && inner > 0 &&
+           (std::isinf(inner) || inner >= suspicious * outer || mass(0) >= constant * mass(1));
+}
+
+bool LadderMasses::is_negligible(const LadderPath& path, Rows rows, std::size_t c,
+                                 std::span<const Witness> seen) const {
+    const std::size_t last = last_shell(rows, c);
+    double inner = 0, most = 0;
+    for (std::size_t i : {last - 1, last})
+        inner =
+            std::max(inner, std::abs(rows[i][c]) * path.volume(exponent_of(path, i), paths_.widths(path)));
+    for (const Witness& w : seen) most = std::max(most, std::abs(w.value[c]) * w.volume);
+    return finest_at_origin * inner < std::numeric_limits<double>::epsilon() * most;
+}
+
+bool LadderMasses::diverge_further(const LadderPath& path, std::size_t c) {
+    if (path.codimension() == 1) return diverge_along(path, c);
+    // Other directions, since a diagonal may be a ridge.
+    for (int i = 0; i < 2; ++i) {
+        LadderPath other = path;
+        paths_.vary(other);
+        if (!diverge_along(other, c)) return ridge_diverges_along(path, c);
+    }
+    return diverge_along(path, c);
+}
+
+bool LadderMasses::ridge_diverges_along(const LadderPath& path, std::size_t c) {
+    constexpr double far_out = 20; // exponent
+    return goes_to_infinity(path, raw_.evaluator().domain()) && diverge_along(path, c) &&
+           ridge_diverges(raw_, path.at(far_out),
+                          [c](const std::vector<double>& row) { return std::abs(row[c]); });
+}
+
+bool LadderMasses::diverge_along(LadderPath path, std::size_t c) {
+    if (goes_to_infinity(path, raw_.evaluator().domain())) return diverge_at_infinity(path, c);
+    // Shells around a place inside, none of which holds an end.
+    for (std::size_t d = 0; d < path.side.size(); ++d)
+        if (const double u = path.anchors[d].u; path.side[d] != 0 && u != 0 && u != 1)
+            path.reach[d] = std::min({path.reach[d], u, 1 - u});
+    if (path.finest() < least_resolved) return false;
+    return masses_diverge(values_along(path, c), path.finest(), path.codimension());
+}
+
+bool LadderMasses::diverge_at_infinity(const LadderPath& path, std::size_t c) {
+    const double finest = finest_at_origin / path.codimension();
+    const ShellValues values = values_far_out(path, c);
+    // Overflow: infinite from half of the way on.
+    const std::array<double, 3> far_out{0.5 * finest, 0.75 * finest, finest};
+    const std::vector<double> g = values(far_out);
+    return std::ranges::all_of(g, [](double v) { return std::isinf(v); }) ||
+           masses_diverge(values, finest, path.codimension());
+}
+
+// Mass that lies farther out than the shell at `finest`, in units of that shell's; 0 where that has none.
+double LadderMasses::mass_beyond(const LadderPath& path, std::size_t c, double finest) {
+    constexpr double step = 2;
+    std::vector<double> exponents;
+    for (double k = finest; k < finest_at_origin; k += step) exponents.push_back(k);
+    const std::vector<double> g = values_far_out(path, c)(exponents);
+    double sum = 0.5;
+    for (std::size_t i = 1; i < g.size(); ++i)
+        if (const double mass = g[i] / g[0] * std::exp2(finest - exponents[i]); !std::isnan(mass))
+            sum += mass;
+    return g[0] > 0 ? step * std::numbers::ln2 * sum : 0;
+}
+
+ShellValues LadderMasses::values_along(const LadderPath& path, std::size_t c) {
+    return [this, path, c](std::span<const double> exponents) {
+        std::vector<std::vector<double>> points;
+        for (double k : exponents) points.push_back(path.at(k));
+        std::vector<double> g;
+        for (const auto& row : raw_(points)) g.push_back(std::abs(row[c]));
+        return g;
+    };
+}
+
+// Shells at infinity, farther out than points of the unit cube can be: |f| at distances 2^k, times the square of the
+// volume that these have, so that masses are those of shells of width 2^-k.
+ShellValues LadderMasses::values_far_out(const LadderPath& path, std::size_t c) {
+    const std::size_t n = path.side.size();
+    PointBuffer u(1, static_cast<int>(n)), x(1, static_cast<int>(n));
+    for (std::size_t d = 0; d < n; ++d)
+        u(0, static_cast<int>(d)) = path.side[d] == 0 ? path.anchors[d].u : 0.5;
+    std::array<double, 1> volume{1};
+    raw_.evaluator().domain().map(u, x, volume);
+    return [this, path, c, x, n](std::span<const double> exponents) {
+        std::vector<std::vector<double>> points;
+        for (double k : exponents) {
+            points.emplace_back(n);
+            for (std::size_t d = 0; d < n; ++d)
+                points.back()[d] = path.side[d] == 0 ? x.view()(0, static_cast<int>(d))
+                                                     : -path.side[d] * std::exp2(path.rate(d) * k) /
+                                                           (off_grid * path.reach[d]);
+        }
+        const auto rows = raw_.at(points);
+        std::vector<double> g;
+        for (std::size_t i = 0; i < rows.size(); ++i)
+            g.push_back(std::abs(rows[i][c]) * std::exp2(2 * path.codimension() * exponents[i]));
+        return g;
+    };
+}
+
+} // namespace montelux

@@ -1,0 +1,56 @@
+// Masses of shells along ladders: whether the integral diverges there, and what of it doubles do not resolve.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/integrate/witness/ladder_path.h"
+#include "montelux/mc/integrate/witness/largest_values.h"
+#include "montelux/mc/integrate/witness/raw_values.h"
+#include "montelux/mc/integrate/witness/shells.h"
+
+namespace montelux {
+
+// Do all variables that move along a path go to infinity?
+bool goes_to_infinity(const LadderPath& path, const Domain& domain);
+
+class LadderMasses {
+  public:
+    // Components of the integrand at the points of a ladder, in its order.
+    using Rows = std::span<const std::vector<double>>;
+
+    // Evaluates further shells by `raw`, in other directions by `paths`; both outlive it.
+    LadderMasses(RawValues& raw, LadderPaths& paths) : raw_(raw), paths_(paths) {}
+
+    // Whether the masses of a component do not fall along a path. Shells of less than the rounding of the largest mass
+    // that was seen do not tell.
+    bool diverge(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen);
+    // Adds what lies closer to an end or a pole, or farther out, than values are resolved along a path of one variable.
+    void add_unresolved(const LadderPath& path, Rows rows, std::size_t c);
+    // Part of the integral of each component; empty where all is resolved.
+    const std::vector<double>& unresolved() const { return unresolved_; }
+
+  private:
+    // The last shell of a ladder where a component is not zero; the second one if that is zero, too.
+    static std::size_t last_shell(Rows rows, std::size_t c);
+    bool is_suspicious(const LadderPath& path, Rows rows, std::size_t c) const;
+    bool is_negligible(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen) const;
+    bool diverge_further(const LadderPath& path, std::size_t c);
+    bool diverge_along(LadderPath path, std::size_t c);
+    bool diverge_at_infinity(const LadderPath& path, std::size_t c);
+    bool ridge_diverges_along(const LadderPath& path, std::size_t c);
+    double mass_beyond(const LadderPath& path, std::size_t c, double finest);
+    double mass_beyond_resolution(const LadderPath& path, Rows rows, std::size_t c);
+    ShellValues values_along(const LadderPath& path, std::size_t c);
+    ShellValues values_far_out(const LadderPath& path, std::size_t c);
+
+    RawValues& raw_;
+    LadderPaths& paths_;
+    std::vector<double> unresolved_;
+    std::vector<std::pair<LadderPath, std::size_t>> added_; // paths and components that are in it
+};
+
+} // namespace montelux
