@@ -139,8 +139,8 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
     if (tally.statistical) missed_of = unreached(look_.slow, missed_of.size(), density, points);
     for (std::size_t c = 0; c < tally.value.size(); ++c) {
         const double tolerance = std::max(request.tolerance(c, tally.value[c]), tally.standard_error[c]);
-        // Mass of a peak that points missed, or may have missed, and of all peaks that they missed.
-        double worst = 0, expected = 0, of_peaks = 0;
+        // Mass of a peak that points missed, or may have missed, and of all peaks and parts of ridges that they missed.
+        double worst = 0, expected = 0, sum = 0;
         const Witness* where = nullptr;
         for (const auto* all : {&look_.peaks, &look_.witnesses})
             for (const Witness& w : *all) {
@@ -150,17 +150,17 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
                 };
                 // Most witnesses are explained by any density.
                 if (!(mass_by(0x1p-4) > least_of_all * tally.standard_error[c])) continue;
-                // A peak speaks for those within it.
-                if (all == &look_.witnesses && std::ranges::any_of(look_.peaks, [&](const Witness& peak) {
-                        return lies_within(peak, w.u);
-                    }))
+                // A peak speaks for those within it, but for parts of ridges.
+                if (all == &look_.witnesses && !w.is_part &&
+                    std::ranges::any_of(look_.peaks,
+                                        [&](const Witness& peak) { return lies_within(peak, w.u); }))
                     continue;
                 const double q = density ? pdf_at(*density, w.u) : 1, mass = mass_by(q);
                 expected = std::max(expected, mass * std::exp(-points * q * w.volume));
-                if (all == &look_.peaks) of_peaks += mass;
+                if (all == &look_.peaks || w.is_part) sum += mass;
                 if (mass > worst) worst = mass, where = &w;
             }
-        worst = std::max(worst, of_peaks);
+        worst = std::max(worst, sum);
         least[c] = std::max(least[c], expected);
         std::array<char, 200> text;
         if (where && worst > tolerance) {

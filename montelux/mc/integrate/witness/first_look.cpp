@@ -28,7 +28,9 @@ constexpr std::size_t most_peaks = 3, more_corners = 8;
 constexpr std::size_t most_followed = 3; // variables in which ridges are followed to the ends
 constexpr double same_root = 0.05;       // of the distance between two
 constexpr double least_followed = 1e-4;  // of a ridge's mass
-constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
+constexpr double same_branch =
+    0.125; // of the cube's width, between points of a ridge that was followed to two ends
+constexpr int most_climbed = 8; // variables in which peaks are climbed and measured
 
 class Look {
   public:
@@ -340,7 +342,7 @@ class Look {
                 look_.peaks.push_back({zeros[i], rows[i], part, top.extent});
                 ++of_ridges_;
             }
-        if (n_ <= most_followed) follow(guide, top, least_followed * height * top.volume);
+        if (n_ <= most_followed) follow(guide, zeros, least_followed * height * top.volume);
     }
 
     // An integrand that vanishes where a guide does may have ridges on both sides: there the guide has the value that it
@@ -351,6 +353,9 @@ class Look {
         if (!affordable(40 * n_)) return;
         const Witness top = climb(raw_, valley, [&](const std::vector<double>& row) { return size(row); });
         if (!(size(top.value) > median_size())) return;
+        Point half = top.u; // where an indicator is as high
+        for (std::size_t d = 0; d < n_; ++d) half[d] = 0.5 * (half[d] + valley.u[d]);
+        if (raw_({half})[0] == top.value) return;
         const double level = guide_at(guide, domain, top.u);
         for (double value : {level, -level}) {
             const Integrand::BatchFunction beside = [&guide, value](const PointBatch& x, ValueBatch y) {
@@ -358,34 +363,56 @@ class Look {
                 for (std::size_t i = 0; i < x.count(); ++i) y(i, 0) -= value;
             };
             std::vector<Point> moved;
+            moved.reserve(zeros.size());
             for (const Point& zero : zeros) moved.push_back(climb_to_zero(beside, domain, zero));
             if (affordable(40 * n_)) find_ridge(beside, std::move(moved), true);
         }
     }
 
-    // Follows a ridge to the ends of the variables, those first where its first part holds most.
-    void follow(const Integrand::BatchFunction& guide, const Witness& top, double least) {
+    // Follows a ridge to the ends of the variables from that of its points which is nearest; those ends first where its
+    // first part holds most.
+    void follow(const Integrand::BatchFunction& guide, const std::vector<Point>& points, double least) {
         const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
         struct End {
             std::size_t d;
             double side, mass;
+            Point from;
         };
         std::vector<End> ends;
         for (std::size_t d = 0; d < n_; ++d)
             for (double side : {-1.0, 1.0}) {
-                const RidgeToEnd first = follow_ridge(raw_, guide, top.u, d, side, magnitude, least, 0);
+                const Point& from =
+                    *std::ranges::max_element(points, {}, [&](const Point& u) { return side * u[d]; });
+                const RidgeToEnd first = follow_ridge(raw_, guide, from, d, side, magnitude, least, 0);
                 if (!first.tops.empty())
-                    ends.push_back({d, side, size(first.tops[0].value) * first.tops[0].volume});
+                    ends.push_back({d, side, size(first.tops[0].value) * first.tops[0].volume, from});
             }
         std::ranges::sort(ends, std::greater{}, &End::mass);
+        std::vector<Point> followed;
         for (const End& end : ends) {
             if (!affordable(0)) return;
-            const RidgeToEnd ridge = follow_ridge(raw_, guide, top.u, end.d, end.side, magnitude, least,
+            const RidgeToEnd ridge = follow_ridge(raw_, guide, end.from, end.d, end.side, magnitude, least,
                                                   settings_.most_evaluations - raw_.evaluations());
-            for (const Witness& w : ridge.tops) keep(w.u, w.value, w.volume, false);
+            const std::size_t before = followed.size();
+            for (const Witness& w : ridge.tops) {
+                // A curve may lead to the ends of two variables at once.
+                const auto is_near = [&](const Point& u) { return largest_difference(u, w.u) < same_branch; };
+                if (keep(w.u, w.value, w.volume, false))
+                    look_.witnesses.back().is_part =
+                        std::ranges::none_of(std::span(followed).first(before), is_near);
+                followed.push_back(w.u);
+            }
+            if (ridge.beyond > 0 && look_.witnesses.back().is_part)
+                masses_.add_unresolved(ridge.tops[ridge.last], ridge.beyond);
             if (ridge.diverges && look_.divergence.empty())
                 look_.divergence = place_text(raw_.evaluator().domain(), ridge.tops.back().u);
         }
+    }
+
+    static double largest_difference(const Point& a, const Point& b) {
+        double most = 0;
+        for (std::size_t d = 0; d < a.size(); ++d) most = std::max(most, std::abs(a[d] - b[d]));
+        return most;
     }
 
     static double distance(const Point& a, const Point& b) {

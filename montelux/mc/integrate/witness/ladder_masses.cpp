@@ -13,6 +13,9 @@ namespace {
 constexpr double least_resolved = 16; // exponent of the finest shell that tells of divergence inside
 constexpr double suspicious = 0.2;    // of the inner shells' masses beside the outer ones',
 constexpr double constant = 0.9;      // or of the innermost one beside the one before
+constexpr double growing = 2;         // factor of |g| from one shell of a ladder to the next, towards a pole
+constexpr double least_left =
+    0.01; // of the inner shells' masses beside the outer ones', for what lies beyond to count
 constexpr double same_pole = 0x1p-20; // of the cube's width: digits are lost closer to it
 
 double exponent_of(const LadderPath& path, std::size_t shell) {
@@ -45,29 +48,48 @@ bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, std
 }
 
 void LadderMasses::add_unresolved(const LadderPath& path, Rows rows, std::size_t c) {
-    if (path.codimension() != 1) return;
-    double mass = mass_beyond_resolution(path, rows, c);
+    double mass = mass_of_rounding(path, rows, c);
+    if (mass == 0 && path.codimension() == 1) mass = mass_beyond_shells(path, rows, c);
     for (std::size_t d = 0; d < path.side.size(); ++d)
         if (path.side[d] != 0) mass *= path.reach[d] * off_grid;
-    const auto is_added = [&](const auto& added) { return added.second == c && is_same(added.first, path); };
-    if (!(mass > 0) || std::ranges::any_of(added_, is_added)) return;
-    added_.emplace_back(path, c);
+    if (!(mass > 0) || std::isinf(mass)) return;
     unresolved_.resize(rows.front().size(), 0.0);
-    unresolved_[c] += mass;
+    const auto known = std::ranges::find_if(
+        added_, [&](const Added& added) { return added.component == c && is_same(added.path, path); });
+    if (known == added_.end()) {
+        added_.push_back({path, c, mass});
+        unresolved_[c] += mass;
+    } else if (mass > known->mass) {
+        unresolved_[c] += mass - known->mass;
+        known->mass = mass;
+    }
 }
 
-// In units of the distance at exponent 0: what rounding to zero loses, at infinity what shells farther out hold, else what
-// the innermost ones leave if they fall by a power.
-double LadderMasses::mass_beyond_resolution(const LadderPath& path, Rows rows, std::size_t c) {
-    const bool to_infinity = goes_to_infinity(path, raw_.evaluator().domain());
+void LadderMasses::add_unresolved(const Witness& part, double times) {
+    unresolved_.resize(part.value.size(), 0.0);
+    for (std::size_t c = 0; c < part.value.size(); ++c)
+        unresolved_[c] += times * std::abs(part.value[c]) * part.volume;
+}
+
+// Mass where values are rounded to zero, in units of the volume at exponent 0.
+double LadderMasses::mass_of_rounding(const LadderPath& path, Rows rows, std::size_t c) {
+    constexpr double far_in = 120; // exponent beyond that of cancellations, where powers are still doubles
     const std::size_t last = last_shell(rows, c);
-    if (last + 1 < ladder.size() && std::abs(rows[last][c]) > std::abs(rows[last - 1][c]))
-        return to_infinity ? 0 : mass_of_lost_digits(values_along(path, c), path.finest());
-    if (!is_suspicious(path, rows, c) || path.finest() > finest_inside) return 0;
+    if (!path.rates.empty() || !(std::abs(rows[last][c]) > growing * std::abs(rows[last - 1][c]))) return 0;
+    const ShellValues values = values_along(path, c);
+    const std::array<double, 1> beyond{std::min(far_in, path.finest())};
+    if (last + 1 == ladder.size() && values(beyond)[0] > 0) return 0;
+    return mass_of_lost_digits(values, path.finest(), path.codimension());
+}
+
+// Mass closer to a place, or farther out, than the shells of a path of one variable, in units of the distance at exponent 0:
+// at infinity by shells farther out, else what the innermost ones leave if they fall by a power.
+double LadderMasses::mass_beyond_shells(const LadderPath& path, Rows rows, std::size_t c) {
+    if (path.finest() > finest_inside || !falls_less_than(least_left, path, rows, c)) return 0;
     const double from = exponent_of(path, 3), to = exponent_of(path, 5);
     const double outer = std::abs(rows[3][c]) * std::exp2(-from),
                  inner = std::abs(rows[5][c]) * std::exp2(-to);
-    if (to_infinity) return inner * mass_beyond(path, c, to);
+    if (goes_to_infinity(path, raw_.evaluator().domain())) return inner * mass_beyond(path, c, to);
     const double fall = std::log2(outer / inner) / (to - from); // 1 - power
     return fall > 0 && fall < 0.9 ? inner / fall : 0;
 }
@@ -78,16 +100,24 @@ std::size_t LadderMasses::last_shell(Rows rows, std::size_t c) {
     return last;
 }
 
-bool LadderMasses::is_suspicious(const LadderPath& path, Rows rows, std::size_t c) const {
-    const std::size_t last = last_shell(rows, c);
-    const auto mass = [&](std::size_t before) {
-        const std::size_t i = std::max(last, before) - before;
-        const double g = std::abs(rows[i][c]);
-        return std::isnan(g) ? 0 : g * std::exp2(-path.codimension() * exponent_of(path, i));
-    };
-    const double inner = std::max(mass(0), mass(1)), outer = std::max(mass(2), mass(3));
-    return rows[last][c] != 0 && inner > 0 &&
-           (std::isinf(inner) || inner >= suspicious * outer || mass(0) >= constant * mass(1));
+// Mass of the shell so many before the last one.
+double LadderMasses::mass(const LadderPath& path, Rows rows, std::size_t c, std::size_t before) {
+    const std::size_t last = last_shell(rows, c), i = std::max(last, before) - before;
+    const double g = std::abs(rows[i][c]);
+    return std::isnan(g) || rows[last][c] == 0 ? 0
+                                               : g * std::exp2(-path.codimension() * exponent_of(path, i));
+}
+
+// Whether the larger mass of the last two shells is at least a part of that of the two before.
+bool LadderMasses::falls_less_than(double part, const LadderPath& path, Rows rows, std::size_t c) {
+    const double inner = std::max(mass(path, rows, c, 0), mass(path, rows, c, 1)),
+                 outer = std::max(mass(path, rows, c, 2), mass(path, rows, c, 3));
+    return inner > 0 && (std::isinf(inner) || inner >= part * outer);
+}
+
+bool LadderMasses::is_suspicious(const LadderPath& path, Rows rows, std::size_t c) {
+    return falls_less_than(suspicious, path, rows, c) ||
+           (mass(path, rows, c, 0) > 0 && mass(path, rows, c, 0) >= constant * mass(path, rows, c, 1));
 }
 
 bool LadderMasses::is_negligible(const LadderPath& path, Rows rows, std::size_t c,
@@ -136,7 +166,7 @@ bool LadderMasses::diverge_at_infinity(const LadderPath& path, std::size_t c) {
     const std::array<double, 3> far_out{0.5 * finest, 0.75 * finest, finest};
     const std::vector<double> g = values(far_out);
     return std::ranges::all_of(g, [](double v) { return std::isinf(v); }) ||
-           masses_diverge(values, finest, path.codimension());
+           masses_diverge(values, finest, path.codimension(), true);
 }
 
 // Mass that lies farther out than the shell at `finest`, in units of that shell's; 0 where that has none.

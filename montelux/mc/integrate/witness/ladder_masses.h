@@ -4,7 +4,6 @@
 #include <array>
 #include <cstddef>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/witness/ladder_path.h"
@@ -28,29 +27,40 @@ class LadderMasses {
     // Whether the masses of a component do not fall along a path. Shells of less than the rounding of the largest mass
     // that was seen do not tell.
     bool diverge(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen);
-    // Adds what lies closer to an end or a pole, or farther out, than values are resolved along a path of one variable.
+    // Adds what lies closer to an end or a pole, or farther out, than values are resolved along a path.
     void add_unresolved(const LadderPath& path, Rows rows, std::size_t c);
+    // Adds so many times the mass of a part of a ridge.
+    void add_unresolved(const Witness& part, double times);
     // Part of the integral of each component; empty where all is resolved.
     const std::vector<double>& unresolved() const { return unresolved_; }
 
   private:
     // The last shell of a ladder where a component is not zero; the second one if that is zero, too.
     static std::size_t last_shell(Rows rows, std::size_t c);
-    bool is_suspicious(const LadderPath& path, Rows rows, std::size_t c) const;
+    static double mass(const LadderPath& path, Rows rows, std::size_t c, std::size_t before);
+    static bool falls_less_than(double part, const LadderPath& path, Rows rows, std::size_t c);
+    static bool is_suspicious(const LadderPath& path, Rows rows, std::size_t c);
     bool is_negligible(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen) const;
     bool diverge_further(const LadderPath& path, std::size_t c);
     bool diverge_along(LadderPath path, std::size_t c);
     bool diverge_at_infinity(const LadderPath& path, std::size_t c);
     bool ridge_diverges_along(const LadderPath& path, std::size_t c);
     double mass_beyond(const LadderPath& path, std::size_t c, double finest);
-    double mass_beyond_resolution(const LadderPath& path, Rows rows, std::size_t c);
+    double mass_of_rounding(const LadderPath& path, Rows rows, std::size_t c);
+    double mass_beyond_shells(const LadderPath& path, Rows rows, std::size_t c);
     ShellValues values_along(const LadderPath& path, std::size_t c);
     ShellValues values_far_out(const LadderPath& path, std::size_t c);
 
     RawValues& raw_;
     LadderPaths& paths_;
     std::vector<double> unresolved_;
-    std::vector<std::pair<LadderPath, std::size_t>> added_; // paths and components that are in it
+    // What it consists of: the largest mass of those paths that lead to the same side of the same pole.
+    struct Added {
+        LadderPath path;
+        std::size_t component;
+        double mass;
+    };
+    std::vector<Added> added_;
 };
 
 } // namespace montelux

@@ -26,6 +26,7 @@ void save(StateWriter& state, const Witness& w) {
     state.put(w.value);
     state.put(w.volume);
     state.put(w.extent);
+    state.put(w.is_part);
 }
 
 void load(StateReader& state, Witness& w) {
@@ -33,6 +34,7 @@ void load(StateReader& state, Witness& w) {
     w.value = state.get_doubles();
     w.volume = state.get_double();
     w.extent = state.get_doubles();
+    w.is_part = state.get<int>() != 0;
 }
 
 LargestValues::LargestValues(int components) : largest_(static_cast<std::size_t>(components)) {}

@@ -18,6 +18,7 @@ struct Witness {
     double volume = 1; // of the part of the cube that it may speak for
     // Half widths of a peak with this top, along each variable, where |g| stays above a half; empty for other points.
     std::vector<double> extent = {};
+    bool is_part = false; // of a ridge, beside other parts: their masses add up
 };
 
 void save(StateWriter& state, const Witness& w);

@@ -229,10 +229,15 @@ RidgeToEnd follow_ridge(RawValues& raw, const Integrand::BatchFunction& guide,
         const double height = magnitude(top.value);
         if (!(height > 0) || !std::isfinite(height)) break;
         measure(raw, top, magnitude, finer);
+        if (is_rounding(top) && masses.size() > 1) {
+            const double fall = std::pow(masses.back() / masses[masses.size() - 2], 1 / guided_step);
+            ridge.beyond = fall < 1 ? fall / (1 - fall) : 0;
+        }
         if (is_rounding(top) || is_valley(raw, top, magnitude)) break;
         top.volume *= std::exp2(-k) / (2 * top.extent[d]); // all of the shell
         if (!(height * top.volume > least)) break;
         masses.push_back(height * top.volume);
+        ridge.last = ridge.tops.size();
         ridge.tops.push_back(std::move(top));
         if (raw.evaluations() - begin > most_evaluations) break;
         for (double between = 1; between < guided_step; ++between) {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 
+#include "montelux/mc/integrate/infinity.h"
+
 namespace montelux {
 namespace {
 
@@ -21,9 +23,12 @@ constexpr double least_growth = 3;
 constexpr double coarsest = 6; // least exponent of the innermost shells
 constexpr double of_digits =
     64; // exponents of zeros by cancellation; farther on intermediate results overflow
-// Part of the exponent at which values are rounded to zero where they are still precise: to 2^(-53 (1 - 0.8)). Second
-// differences of log2 |g| over sixteenths of an octave: quanta of rounding give steps of one and less, powers none.
-constexpr double precise = 0.8, rough = 0.2, smooth = 0.05;
+// Parts of the exponent at which values are rounded to zero: the last five of 53 digits, and where values are precise to
+// 10 and to 21 digits.
+constexpr double rounded_part = 0.1, precise = 0.8, coarser = 0.6;
+// Second differences of log2 |g|: quanta of rounding give steps of one and less, powers none.
+constexpr double rough = 0.2, smooth = 0.05;
+constexpr double least_fall = 0.02; // of masses before rounding, for each octave
 
 std::vector<double> exponents(double from, double to) {
     std::vector<double> k;
@@ -70,13 +75,13 @@ LastValue last_value(const ShellValues& values, double finest) {
     return {known, beyond};
 }
 
-// Roughness of log2 |g| over the two octaves up to an exponent, since the last quantum of a rounded value may fill one:
-// the largest second difference, of that sign which has the smaller one. Steep slopes have one sign alone.
-double roughness(const ShellValues& values, double exponent) {
-    constexpr std::size_t points = 33;
+// Second differences of log2 |g| over `window` exponents up to one: the largest, of that sign which has the smaller one.
+// Steep slopes have one sign alone, quanta of rounding both.
+double roughness(const ShellValues& values, double exponent, double window) {
+    constexpr std::size_t points = 65;
     std::vector<double> k(points);
     for (std::size_t i = 0; i < points; ++i)
-        k[i] = exponent - 2 + static_cast<double>(2 * i) / static_cast<double>(points - 1);
+        k[i] = exponent - window * (1 - static_cast<double>(i) / static_cast<double>(points - 1));
     const std::vector<double> g = values(k);
     double up = 0, down = 0;
     for (std::size_t i = 1; i + 1 < points; ++i) {
@@ -87,13 +92,23 @@ double roughness(const ShellValues& values, double exponent) {
     return std::min(up, down);
 }
 
-// Whether cancellation rounds values to zero, as 1 - cos r: they lose digits octave by octave, so that the last octaves
-// are rough where those at some distance are smooth. What ends in truth is as rough as before.
+// Whether cancellation rounds values to zero beyond an exponent, as it does 1 - cos r: they lose their 53 digits at a steady
+// rate, so that there they are rough where those at some distance are smooth. What ends in truth is as rough as before.
 bool loses_digits(const ShellValues& values, double last) {
-    return roughness(values, last) > rough && roughness(values, precise * last) < smooth;
+    const double window = rounded_part * last;
+    return roughness(values, last, window) > rough && roughness(values, precise * last, window) < smooth;
 }
 
-bool masses_diverge_until(const ShellValues& values, double finest, int codimension, bool may_be_rounded) {
+// Octaves by which masses fall from one octave of the distance to the next, where values are still precise.
+double fall_before(const ShellValues& values, double last, int codimension) {
+    const std::array<double, 2> k{coarser * last, precise * last};
+    const std::vector<double> g = values(k);
+    return codimension + std::log2(g[0] / g[1]) / (k[1] - k[0]);
+}
+
+enum class Rounding { unlikely, likely, overflows };
+
+bool masses_diverge_until(const ShellValues& values, double finest, int codimension, Rounding rounding) {
     if (finest < coarsest) return false;
     const std::vector<double> outer = exponents(outer_from * finest, outer_to * finest);
     const std::vector<double> inner = exponents(inner_from * finest, inner_to * finest);
@@ -114,10 +129,11 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     }
     // Infinite, zero or no number, by overflow or rounding: the shells up to there tell.
     if (rounded) {
-        if (!may_be_rounded) return false;
+        if (rounding == Rounding::unlikely) return false;
         const auto [last, beyond] = last_value(values, finest);
-        if (beyond != 0 || last > of_digits) return masses_diverge_until(values, last, codimension, false);
-        return loses_digits(values, last) && masses_diverge_until(values, precise * last, codimension, false);
+        if (beyond != 0 || (rounding == Rounding::overflows && last > of_digits))
+            return masses_diverge_until(values, last, codimension, Rounding::unlikely);
+        return loses_digits(values, last) && fall_before(values, last, codimension) < least_fall;
     }
     // Values that no longer grow are those of a narrow peak. Over three octaves those of a pole grow by 8^codimension or
     // more, but for oscillations.
@@ -132,17 +148,18 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
 
 } // namespace
 
-double mass_of_lost_digits(const ShellValues& values, double finest) {
+double mass_of_lost_digits(const ShellValues& values, double finest, int codimension) {
     const auto [last, beyond] = last_value(values, finest);
-    if (beyond != 0 || last > of_digits || !loses_digits(values, last)) return 0;
-    const std::array<double, 2> k{0.5 * precise * last, precise * last};
-    const std::vector<double> g = values(k);
-    const double fall = std::log2(g[0] / g[1]) / (k[1] - k[0]) + 1; // of masses, for each octave
-    return fall > 0 ? g[1] * std::exp2(-k[1] - fall * (last - k[1])) / fall : 0;
+    if (beyond != 0 || !loses_digits(values, last)) return 0;
+    const double fall = fall_before(values, last, codimension);
+    if (fall < least_fall) return infinity;
+    const std::array<double, 1> k{precise * last};
+    return codimension * values(k)[0] * std::exp2(-codimension * k[0] - fall * (last - k[0])) / fall;
 }
 
-bool masses_diverge(const ShellValues& values, double finest, int codimension) {
-    return masses_diverge_until(values, finest, codimension, true);
+bool masses_diverge(const ShellValues& values, double finest, int codimension, bool overflows) {
+    return masses_diverge_until(values, finest, codimension,
+                                overflows ? Rounding::overflows : Rounding::likely);
 }
 
 } // namespace montelux

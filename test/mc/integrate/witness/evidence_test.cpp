@@ -154,6 +154,73 @@ TEST(Evidence, DigitsLostByCancellationAreInTheError) {
     }
 }
 
+// The same by one digit an octave, at infinity and at a corner; and masses that fall like 1 / k^2 to infinity.
+TEST(Evidence, WhatDoublesDoNotResolveIsInTheError) {
+    struct Case {
+        Integrand f;
+        Domain domain;
+        double exact;
+    };
+    const Domain beyond_one = Domain::interval(1, infinity);
+    const std::vector<Case> cases{
+        {[](double x) { return std::log(1 + x) / std::pow(x, 1.9); }, Domain::interval(0, 1), 9.6531},
+        {[](double x) { return (1 - std::cos(1 / x)) * std::pow(x, 0.8); }, beyond_one, 2.481387},
+        {[](double x) { return (std::sqrt(std::pow(x, 4) + x) - x * x) / std::pow(x, 0.6); }, beyond_one,
+         0.80538},
+        {[](std::span<const double> x) {
+             const double r = std::hypot(x[0], x[1]);
+             return (1 - std::cos(r)) / std::pow(r, 3.8);
+         },
+         Domain::unit_cube(2), 3.977186},
+        {[](double x) { return 1 / (x * std::pow(std::log(x), 2)); }, Domain::interval(2, infinity),
+         1 / std::log(2.0)},
+    };
+    for (std::size_t i = 0; i < cases.size(); ++i)
+        for (std::uint64_t seed : {2u, 6u}) {
+            const IntegrationResult r =
+                integrate(cases[i].f, cases[i].domain, Method(),
+                          {.relative_error = 1e-2, .evaluations = 1'000'000}, {.seed = seed, .threads = 1});
+            EXPECT_LT(std::abs(r.value[0] - cases[i].exact), 4 * r.standard_error[0])
+                << i << " " << seed << ": " << to_string(r);
+        }
+}
+
+// Integrals of pi^2, 2 pi and pi, of which ridges to infinity hold a tenth beyond the points that sampling reaches.
+TEST(Evidence, FarPartsOfRidgesAreInTheError) {
+    const auto exponential = [](std::span<const double> x) { return x[0] - std::exp(x[1]); };
+    const auto parabola = [](std::span<const double> x) { return x[1] - x[0] * x[0]; };
+    struct Case {
+        Integrand guide, f;
+        double exact;
+    };
+    const std::vector<Case> cases{
+        {exponential,
+         [=](std::span<const double> x) { return 1 / (1 + std::pow(exponential(x), 2)) / (1 + x[1] * x[1]); },
+         std::numbers::pi * std::numbers::pi},
+        {parabola,
+         [=](std::span<const double> x) {
+             const double v = std::abs(parabola(x));
+             return v * std::exp(-v) / (1 + x[0] * x[0]);
+         },
+         2 * std::numbers::pi},
+        {parabola,
+         [=](std::span<const double> x) { return std::exp(-std::abs(parabola(x))) / (2 + 2 * x[0] * x[0]); },
+         std::numbers::pi},
+    };
+    const Domain plane({{-infinity, infinity}, {-infinity, infinity}});
+    for (std::size_t i = 0; i < cases.size(); ++i) {
+        const Integrand f = cases[i].f.with_guides(
+            {[guide = cases[i].guide](const PointBatch& x, ValueBatch y) { guide(x, y); }});
+        for (std::uint64_t seed : {2u, 3u, 4u, 5u}) {
+            const IntegrationResult r =
+                integrate(f, plane, Method(), {.relative_error = 1e-2, .evaluations = 300'000},
+                          {.seed = seed, .threads = 1});
+            EXPECT_LT(std::abs(r.value[0] - cases[i].exact), 5 * r.standard_error[0])
+                << i << " " << seed << ": " << to_string(r);
+        }
+    }
+}
+
 // The part of r^-1.8 around a point of the plane that lies closer than the points reach.
 TEST(Evidence, PolesInsideOfSeveralVariablesRaiseTheError) {
     const auto f = [](std::span<const double> x) {

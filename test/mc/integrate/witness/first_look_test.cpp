@@ -326,6 +326,29 @@ TEST(FirstLook, FollowsRidgesBesideTheZerosOfGuides) {
     }
 }
 
+// Doubles resolve the ridge of x = exp(y) until y = 15 or so, beyond which it holds pi (pi / 2 - atan(15)) = 0.2. Climbs
+// that keep x reach it from a point of the ridge with a large x, not from where exp(y) is flat.
+TEST(FirstLook, FollowsExponentialRidgesAsFarAsDoublesResolveThem) {
+    const auto curve = [](std::span<const double> x) { return x[0] - std::exp(x[1]); };
+    const Integrand guide(curve);
+    const std::vector<Integrand::BatchFunction> guides{
+        [&](const PointBatch& x, ValueBatch y) { guide(x, y); }};
+    const auto ridge = [&](std::span<const double> x) {
+        return 1 / (1 + std::pow(curve(x), 2)) / (1 + x[1] * x[1]);
+    };
+    const Evaluator evaluator(Integrand(ridge), Domain({{-infinity, infinity}, {-infinity, infinity}}));
+    int followed = 0;
+    for (std::uint64_t seed = 0; seed < 20; ++seed) {
+        const FirstLook look = first_look(evaluator, {.guides = guides, .seed = seed});
+        EXPECT_EQ(look.divergence, "") << seed;
+        if (look.unresolved.empty()) continue;
+        ++followed;
+        EXPECT_GT(look.unresolved[0], 0.03) << seed;
+        EXPECT_LT(look.unresolved[0], 0.6) << seed;
+    }
+    EXPECT_GE(followed, 16);
+}
+
 // A region of cubature that begins beside the top holds a part of the peak.
 TEST(FirstLook, SeesFlanksOfPeaks) {
     const auto peak = [](std::span<const double> x) {

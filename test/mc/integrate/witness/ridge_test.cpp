@@ -1,6 +1,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -118,6 +119,27 @@ TEST(Ridge, OfAGuideIsFollowedToInfinity) {
         EXPECT_EQ(ridge.diverges, curve.diverges) << curve.name;
         EXPECT_LT(raw.evaluations(), 1600u) << curve.name;
     }
+}
+
+// The ridge of a curve that doubles resolve up to y = 15 of infinity: beyond, masses fall like 1 / y^2.
+TEST(Ridge, WhatLiesBeyondDoublesIsEstimated) {
+    const Integrand guide([](std::span<const double> x) { return x[0] - std::exp(x[1]); });
+    const Integrand f([](std::span<const double> x) {
+        return 1 / (1 + std::pow(x[0] - std::exp(x[1]), 2)) / (1 + x[1] * x[1]);
+    });
+    const Evaluator evaluator(f, plane);
+    RawValues raw(evaluator);
+    const RidgeToEnd ridge = follow_ridge(
+        raw, [&](const PointBatch& x, ValueBatch y) { guide(x, y); }, {0.75, 0.6}, 0, 1,
+        [](const std::vector<double>& row) { return row[0]; }, 0, 3000);
+    ASSERT_GT(ridge.tops.size(), 6u);
+    const Witness& last = ridge.tops[ridge.last];
+    // The volume stands for an octave of x at the height of its top: half of the width pi of the ridge.
+    const double y = -std::log2(1 - last.u[0]) * std::numbers::ln2;
+    EXPECT_GT(y, 13);
+    const double tail = std::numbers::pi * (std::numbers::pi / 2 - std::atan(y));
+    EXPECT_GT(ridge.beyond * last.value[0] * last.volume, 0.2 * tail);
+    EXPECT_LT(ridge.beyond * last.value[0] * last.volume, 2 * tail);
 }
 
 // The integrand vanishes on the curve, and is largest beside it.
