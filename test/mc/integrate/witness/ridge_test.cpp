@@ -133,7 +133,7 @@ TEST(Ridge, WhatLiesBeyondDoublesIsEstimated) {
         raw, [&](const PointBatch& x, ValueBatch y) { guide(x, y); }, {0.75, 0.6}, 0, 1,
         [](const std::vector<double>& row) { return row[0]; }, 0, 3000);
     ASSERT_GT(ridge.tops.size(), 6u);
-    const Witness& last = ridge.tops[ridge.last];
+    const Witness& last = ridge.tops.back();
     // The volume stands for an octave of x at the height of its top: half of the width pi of the ridge.
     const double y = -std::log2(1 - last.u[0]) * std::numbers::ln2;
     EXPECT_GT(y, 13);
