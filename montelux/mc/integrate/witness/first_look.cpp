@@ -29,9 +29,8 @@ constexpr std::size_t most_peaks = 3, more_corners = 8;
 constexpr std::size_t most_followed = 3; // variables in which ridges are followed to the ends
 constexpr double same_root = 0.05;       // of the distance between two
 constexpr double least_followed = 1e-4;  // of a ridge's mass
-constexpr double same_branch =
-    0.125; // of the cube's width, between points of a ridge that was followed to two ends
-constexpr int most_climbed = 8; // variables in which peaks are climbed and measured
+constexpr double same_branch = 0.125;    // of the cube's width: of a ridge that leads to two ends
+constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
 
 class Look {
   public:
@@ -313,6 +312,7 @@ class Look {
         }
     }
 
+    // `beside`: the guide is one that was shifted to a ridge beside a valley, beside which no further ones are looked for.
     void find_ridge(const Integrand::BatchFunction& guide, std::vector<Point> zeros, bool beside = false) {
         const Magnitude magnitude = [&](const std::vector<double>& row) { return size(row); };
         // The nearest pair: a climb from between remote points of a curve may lead anywhere.

@@ -13,9 +13,8 @@ namespace {
 constexpr double least_resolved = 16; // exponent of the finest shell that tells of divergence inside
 constexpr double suspicious = 0.2;    // of the inner shells' masses beside the outer ones',
 constexpr double constant = 0.9;      // or of the innermost one beside the one before
+constexpr double least_left = 0.01;   // the first of these, from which on it counts what lies beyond
 constexpr double growing = 2;         // factor of |g| from one shell of a ladder to the next, towards a pole
-constexpr double least_left =
-    0.01; // of the inner shells' masses beside the outer ones', for what lies beyond to count
 constexpr double same_pole = 0x1p-20; // of the cube's width: digits are lost closer to it
 
 double exponent_of(const LadderPath& path, std::size_t shell) {
