@@ -378,7 +378,7 @@ class Look {
     // Follows a ridge to the ends of the variables from that of its points which is nearest; those ends first where its
     // first part holds most.
     void follow(const Integrand::BatchFunction& guide, const std::vector<Point>& points, double least) {
-        // In the units of now, which what is found here changes.
+        // Sizes in units that do not change by what is found here.
         const Magnitude magnitude = [this, unit = largest_](const std::vector<double>& row) {
             return size(row, unit);
         };

@@ -13,7 +13,7 @@ namespace {
 constexpr double least_resolved = 16; // exponent of the finest shell that tells of divergence inside
 constexpr double suspicious = 0.2;    // of the inner shells' masses beside the outer ones',
 constexpr double constant = 0.9;      // or of the innermost one beside the one before
-constexpr double least_left = 0.01;   // the first of these, from which on it counts what lies beyond
+constexpr double least_left = 0.01;   // of the outer ones: from there on it counts what lies beyond
 constexpr double growing = 2;         // factor of |g| from one shell of a ladder to the next, towards a pole
 constexpr double same_pole = 0x1p-20; // of the cube's width: digits are lost closer to it
 
@@ -21,7 +21,7 @@ double exponent_of(const LadderPath& path, std::size_t shell) {
     return ladder[shell] * std::min(path.finest(), ladder.back()) / ladder.back();
 }
 
-// Same side of the same pole.
+// Whether two paths lead to one side of one pole.
 bool is_same(const LadderPath& a, const LadderPath& b) {
     for (std::size_t d = 0; d < a.side.size(); ++d)
         if (a.side[d] != b.side[d] ||

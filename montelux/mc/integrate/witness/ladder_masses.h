@@ -54,7 +54,7 @@ class LadderMasses {
     RawValues& raw_;
     LadderPaths& paths_;
     std::vector<double> unresolved_;
-    // What it consists of: the largest mass of those paths that lead to the same side of the same pole.
+    // Parts of it: the largest mass of all paths that lead to one side of a pole.
     struct Added {
         LadderPath path;
         std::size_t component;

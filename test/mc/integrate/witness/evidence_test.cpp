@@ -154,7 +154,7 @@ TEST(Evidence, DigitsLostByCancellationAreInTheError) {
     }
 }
 
-// The same by one digit an octave, at infinity and at a corner; and masses that fall like 1 / k^2 to infinity.
+// Cancellation of one digit an octave, at infinity and at a corner; masses that fall like 1 / k^2 to infinity.
 TEST(Evidence, WhatDoublesDoNotResolveIsInTheError) {
     struct Case {
         Integrand f;
