@@ -106,7 +106,6 @@ class Look {
                     look_.divergence = place_of(paths[p]);
                     return;
                 }
-                masses_.add_unresolved(paths[p], along, c);
             }
         for (std::size_t p = 0; p < walked; ++p) note_slow(paths[p], rows, p * ladder.size());
     }

@@ -1,6 +1,7 @@
 #include "montelux/mc/integrate/witness/ladder_masses.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -30,8 +31,7 @@ bool is_same(const LadderPath& a, const LadderPath& b) {
     return true;
 }
 
-} // namespace
-
+// Do all variables that move go to infinity?
 bool goes_to_infinity(const LadderPath& path, const Domain& domain) {
     const std::span<const Range> ranges = domain.ranges();
     if (ranges.empty()) return false;
@@ -42,19 +42,25 @@ bool goes_to_infinity(const LadderPath& path, const Domain& domain) {
     return true;
 }
 
+} // namespace
+
 bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen) {
-    if (is_suspicious(path, rows, c)) return !is_negligible(path, rows, c, seen) && diverge_further(path, c);
+    const bool suspected = is_suspicious(path, rows, c);
+    if (suspected && !is_negligible(path, rows, c, seen) && diverge_further(path, c)) return true;
+    double mass = mass_of_rounding(path, rows, c);
     // Shells may be rounded to zero from the second one on.
-    return path.codimension() == 1 && std::isinf(mass_of_rounding(path, rows, c));
+    if (!suspected && path.codimension() == 1 && std::isinf(mass)) return true;
+    if (mass == 0 && path.codimension() == 1) mass = mass_beyond_shells(path, rows, c);
+    add_unresolved(path, c, mass);
+    return false;
 }
 
-void LadderMasses::add_unresolved(const LadderPath& path, Rows rows, std::size_t c) {
-    double mass = mass_of_rounding(path, rows, c);
-    if (mass == 0 && path.codimension() == 1) mass = mass_beyond_shells(path, rows, c);
+// Adds a mass in units of the volume at exponent 0.
+void LadderMasses::add_unresolved(const LadderPath& path, std::size_t c, double mass) {
     for (std::size_t d = 0; d < path.side.size(); ++d)
         if (path.side[d] != 0) mass *= path.reach[d] * off_grid;
     if (!(mass > 0) || std::isinf(mass)) return;
-    unresolved_.resize(rows.front().size(), 0.0);
+    unresolved_.resize(static_cast<std::size_t>(raw_.evaluator().components()), 0.0);
     const auto known = std::ranges::find_if(
         added_, [&](const Added& added) { return added.component == c && is_same(added.path, path); });
     if (known == added_.end()) {

@@ -1,7 +1,6 @@
 // Masses of shells along ladders: whether the integral diverges there, and what of it doubles do not resolve.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <span>
 #include <vector>
@@ -13,9 +12,6 @@
 
 namespace montelux {
 
-// Do all variables that move along a path go to infinity?
-bool goes_to_infinity(const LadderPath& path, const Domain& domain);
-
 class LadderMasses {
   public:
     // Components of the integrand at the points of a ladder, in its order.
@@ -25,10 +21,9 @@ class LadderMasses {
     LadderMasses(RawValues& raw, LadderPaths& paths) : raw_(raw), paths_(paths) {}
 
     // Whether the masses of a component do not fall along a path. Shells of less than the rounding of the largest mass
-    // that was seen do not tell.
+    // that was seen do not tell. If they fall, adds what lies closer to an end or a pole, or farther out, than values are
+    // resolved.
     bool diverge(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen);
-    // Adds what lies closer to an end or a pole, or farther out, than values are resolved along a path.
-    void add_unresolved(const LadderPath& path, Rows rows, std::size_t c);
     // Adds so many times the mass of a part of a ridge.
     void add_unresolved(const Witness& part, double times);
     // Part of the integral of each component; empty where all is resolved.
@@ -39,6 +34,7 @@ class LadderMasses {
     static std::size_t last_shell(Rows rows, std::size_t c);
     static double mass(const LadderPath& path, Rows rows, std::size_t c, std::size_t before);
     static bool falls_less_than(double part, const LadderPath& path, Rows rows, std::size_t c);
+    void add_unresolved(const LadderPath& path, std::size_t c, double mass);
     static bool is_suspicious(const LadderPath& path, Rows rows, std::size_t c);
     bool is_negligible(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen) const;
     bool diverge_further(const LadderPath& path, std::size_t c);
