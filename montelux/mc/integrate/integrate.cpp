@@ -30,6 +30,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t default_evaluations = 1'000'000;
+// Layout of checkpoints, to be raised with each change of what a part of a run saves.
+constexpr std::uint64_t state_version = 2;
 constexpr std::uint64_t no_limit = ~std::uint64_t{0};
 constexpr std::uint64_t most_of_look = 2048;  // evaluations,
 constexpr std::uint64_t share_of_look = 16;   // and one over the largest share of the limit
@@ -503,6 +505,7 @@ class Run {
 
     void save() const {
         StateWriter state;
+        state.put(state_version);
         state.put(fingerprint_);
         state.put(elapsed());
         state.put(lost_);
@@ -518,6 +521,9 @@ class Run {
         SavedState saved = read_state(options_.checkpoint, "integration");
         checkpoint_refused_because_ = std::move(saved.newest_refused_because);
         StateReader& state = saved.reader;
+        if (state.get_word() != state_version)
+            throw Error(options_.checkpoint,
+                        "was saved by another version of Montelux; remove it to start again");
         if (state.get_word() != fingerprint_)
             throw Error(options_.checkpoint, "belongs to another integrand, domain, method or seed");
         seconds_before_ = state.get_double();

@@ -138,6 +138,28 @@ TEST(IntegrateCheckpoint, OfAnotherComponentIsRefused) {
                      [&] { integrate(other, line, basic, {.evaluations = 9000}, resume); });
     EXPECT_EQ(integrate(pair(1, 2), line, basic, {.evaluations = 9000}, resume).evaluations, 9000u);
 }
+TEST(IntegrateCheckpoint, OfAnotherVersionIsRefused) {
+    const CheckpointFile file;
+    const Domain square = Domain::unit_cube(2);
+    integrate(product, square, basic, {.evaluations = 5000}, {.checkpoint = file.path()});
+    SavedState saved = read_state(file.path(), "integration");
+    const std::uint64_t version = saved.reader.get_word();
+    const std::vector<std::uint64_t> rest = saved.reader.rest();
+    for (std::uint64_t other : {version + 1, version}) {
+        StateWriter state;
+        state.put(other);
+        for (std::uint64_t word : rest) state.put(word);
+        write_state(file.path(), "integration", state);
+        const auto resume = [&] {
+            return integrate(product, square, basic, {.evaluations = 9000},
+                             {.checkpoint = file.path(), .resume = true});
+        };
+        if (other == version)
+            EXPECT_EQ(resume().evaluations, 9000u);
+        else
+            expect_error("was saved by another version of Montelux", resume);
+    }
+}
 TEST(IntegrateCheckpoint, DamagedFilesAreRefused) {
     const CheckpointFile file;
     const IntegrationOptions resume{.checkpoint = file.path(), .resume = true};

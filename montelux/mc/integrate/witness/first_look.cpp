@@ -14,6 +14,7 @@
 #include "montelux/mc/integrate/witness/guide_zeros.h"
 #include "montelux/mc/integrate/witness/ladder_masses.h"
 #include "montelux/mc/integrate/witness/ladder_path.h"
+#include "montelux/mc/integrate/witness/lost_digits.h"
 #include "montelux/mc/integrate/witness/peak.h"
 #include "montelux/mc/integrate/witness/raw_values.h"
 #include "montelux/mc/integrate/witness/ridge.h"
@@ -79,19 +80,35 @@ class Look {
     }
 
     // Evaluates the ladders and keeps what they saw. `tests`: whether their masses fall.
-    void walk(const std::vector<LadderPath>& paths, bool tests = true) {
+    void walk(std::vector<LadderPath> paths, bool tests = true) {
         std::vector<Point> points;
         std::vector<double> volumes;
         std::size_t walked = 0;
-        for (; walked < paths.size() && affordable(points.size() + ladder.size()); ++walked) {
-            const double finest = std::min(paths[walked].finest(), ladder.back());
-            for (double k : ladder) {
-                points.push_back(paths[walked].at(k * finest / ladder.back()));
-                volumes.push_back(
-                    paths[walked].volume(k * finest / ladder.back(), paths_.widths(paths[walked])));
+        for (; walked < paths.size() && affordable(points.size() + ladder.size()); ++walked)
+            place(paths[walked], points, volumes);
+        auto rows = raw_(points);
+        for (std::size_t i = 0; i < points.size(); ++i) masses_.see(rows[i], volumes[i]);
+        for (std::size_t p = 0; p < walked; ++p) {
+            double noise = infinity;
+            const auto along = std::span(rows).subspan(p * ladder.size(), ladder.size());
+            for (std::size_t c = 0; c < components(); ++c) {
+                const double of_component = masses_.noise(paths[p], along, c);
+                noise = std::min(noise, of_component);
+                if (tests && look_.divergence.empty() && masses_.diverge(paths[p], along, c, of_component))
+                    look_.divergence = place_of(paths[p]);
             }
+            if (noise == infinity) continue;
+            // What noise shows is no evidence.
+            paths[p].precise_to = precise * noise;
+            std::vector<Point> precise_points;
+            std::vector<double> their_volumes;
+            place(paths[p], precise_points, their_volumes);
+            std::ranges::copy(raw_(precise_points), along.begin());
+            std::ranges::copy(precise_points,
+                              points.begin() + static_cast<std::ptrdiff_t>(p * ladder.size()));
+            std::ranges::copy(their_volumes,
+                              volumes.begin() + static_cast<std::ptrdiff_t>(p * ladder.size()));
         }
-        const auto rows = raw_(points);
         for (std::size_t i = 0; i < points.size(); ++i)
             if (keep(points[i], rows[i], volumes[i], i % ladder.size() == 0) &&
                 is_inside(paths[i / ladder.size()]) &&
@@ -99,15 +116,16 @@ class Look {
                 deep_.push_back(look_.witnesses.size() - 1);
         refine(paths, walked, rows, volumes);
         if (!tests || !look_.divergence.empty()) return;
-        for (std::size_t p = 0; p < walked; ++p)
-            for (std::size_t c = 0; c < components(); ++c) {
-                const auto along = std::span(rows).subspan(p * ladder.size(), ladder.size());
-                if (masses_.diverge(paths[p], along, c, look_.witnesses)) {
-                    look_.divergence = place_of(paths[p]);
-                    return;
-                }
-            }
         for (std::size_t p = 0; p < walked; ++p) note_slow(paths[p], rows, p * ladder.size());
+    }
+
+    // Adds the points of a ladder, and the volumes of their shells.
+    void place(const LadderPath& path, std::vector<Point>& points, std::vector<double>& volumes) const {
+        const double finest = std::min(path.finest(), ladder.back());
+        for (double k : ladder) {
+            points.push_back(path.at(k * finest / ladder.back()));
+            volumes.push_back(path.volume(k * finest / ladder.back(), paths_.widths(path)));
+        }
     }
 
     // Keeps a ladder whose masses fall slowly. In several variables the smaller values of it and of another one to the
@@ -218,8 +236,7 @@ class Look {
     // `ordinary`: the outermost point of a ladder, which tells what sizes values usually have. False for values that are not
     // finite.
     bool keep(const Point& u, const std::vector<double>& row, double volume, bool ordinary) {
-        for (std::size_t c = 0; c < row.size(); ++c)
-            if (!std::isfinite(row[c])) return false;
+        if (!masses_.see(row, volume)) return false;
         for (std::size_t c = 0; c < row.size(); ++c) largest_[c] = std::max(largest_[c], std::abs(row[c]));
         if (ordinary) ordinary_.push_back(look_.witnesses.size());
         look_.witnesses.push_back({u, row, volume});

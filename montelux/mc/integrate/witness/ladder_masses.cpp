@@ -6,6 +6,7 @@
 #include <limits>
 #include <numbers>
 
+#include "montelux/mc/integrate/witness/lost_digits.h"
 #include "montelux/mc/integrate/witness/ridge.h"
 
 namespace montelux {
@@ -44,10 +45,25 @@ bool goes_to_infinity(const LadderPath& path, const Domain& domain) {
 
 } // namespace
 
-bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen) {
+LadderMasses::LadderMasses(RawValues& raw, LadderPaths& paths)
+    : raw_(raw), paths_(paths), most_(static_cast<std::size_t>(raw.evaluator().components()), 0.0) {}
+
+bool LadderMasses::see(const std::vector<double>& row, double volume) {
+    if (!std::ranges::all_of(row, [](double value) { return std::isfinite(value); })) return false;
+    for (std::size_t c = 0; c < row.size(); ++c) most_[c] = std::max(most_[c], std::abs(row[c]) * volume);
+    return true;
+}
+
+double LadderMasses::noise(const LadderPath& path, Rows rows, std::size_t c) {
+    const bool grows = mass(path, rows, c, 0) > mass(path, rows, c, 1) && !is_negligible(path, rows, c);
+    return grows ? noise_from(values_along(path, c), path.finest()) : infinity;
+}
+
+bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, double noise) {
     const bool suspected = is_suspicious(path, rows, c);
-    if (suspected && !is_negligible(path, rows, c, seen) && diverge_further(path, c)) return true;
-    double mass = mass_of_rounding(path, rows, c);
+    if (suspected && !is_negligible(path, rows, c) && diverge_further(path, c)) return true;
+    double mass = noise < infinity ? mass_beyond(values_along(path, c), noise, path.codimension())
+                                   : mass_of_rounding(path, rows, c);
     // Shells may be rounded to zero from the second one on.
     if (!suspected && path.codimension() == 1 && std::isinf(mass)) return true;
     if (mass == 0 && path.codimension() == 1) mass = mass_beyond_shells(path, rows, c);
@@ -102,7 +118,7 @@ double LadderMasses::mass_beyond_shells(const LadderPath& path, Rows rows, std::
     const double from = exponent_of(path, 3), to = exponent_of(path, 5);
     const double outer = std::abs(rows[3][c]) * std::exp2(-from),
                  inner = std::abs(rows[5][c]) * std::exp2(-to);
-    if (goes_to_infinity(path, raw_.evaluator().domain())) return inner * mass_beyond(path, c, to);
+    if (goes_to_infinity(path, raw_.evaluator().domain())) return inner * mass_farther_out(path, c, to);
     const double fall = std::log2(outer / inner) / (to - from); // 1 - power
     return fall > 0 && fall < 0.9 ? inner / fall : 0;
 }
@@ -133,15 +149,13 @@ bool LadderMasses::is_suspicious(const LadderPath& path, Rows rows, std::size_t 
            (mass(path, rows, c, 0) > 0 && mass(path, rows, c, 0) >= constant * mass(path, rows, c, 1));
 }
 
-bool LadderMasses::is_negligible(const LadderPath& path, Rows rows, std::size_t c,
-                                 std::span<const Witness> seen) const {
+bool LadderMasses::is_negligible(const LadderPath& path, Rows rows, std::size_t c) const {
     const std::size_t last = last_shell(rows, c);
-    double inner = 0, most = 0;
+    double inner = 0;
     for (std::size_t i : {last - 1, last})
         inner =
             std::max(inner, std::abs(rows[i][c]) * path.volume(exponent_of(path, i), paths_.widths(path)));
-    for (const Witness& w : seen) most = std::max(most, std::abs(w.value[c]) * w.volume);
-    return finest_at_origin * inner < std::numeric_limits<double>::epsilon() * most;
+    return finest_at_origin * inner < std::numeric_limits<double>::epsilon() * most_[c];
 }
 
 bool LadderMasses::diverge_further(const LadderPath& path, std::size_t c) {
@@ -183,7 +197,7 @@ bool LadderMasses::diverge_at_infinity(const LadderPath& path, std::size_t c) {
 }
 
 // Mass that lies farther out than the shell at `finest`, in units of that shell's; 0 where that has none.
-double LadderMasses::mass_beyond(const LadderPath& path, std::size_t c, double finest) {
+double LadderMasses::mass_farther_out(const LadderPath& path, std::size_t c, double finest) {
     constexpr double step = 2;
     std::vector<double> exponents;
     for (double k = finest; k < finest_at_origin; k += step) exponents.push_back(k);

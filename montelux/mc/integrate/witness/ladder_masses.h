@@ -18,12 +18,16 @@ class LadderMasses {
     using Rows = std::span<const std::vector<double>>;
 
     // Evaluates further shells by `raw`, in other directions by `paths`; both outlive it.
-    LadderMasses(RawValues& raw, LadderPaths& paths) : raw_(raw), paths_(paths) {}
+    LadderMasses(RawValues& raw, LadderPaths& paths);
 
-    // Whether the masses of a component do not fall along a path. Shells of less than the rounding of the largest mass
-    // that was seen do not tell. If they fall, adds what lies closer to an end or a pole, or farther out, than values are
-    // resolved.
-    bool diverge(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen);
+    // Notes the masses of a value that was seen; false if it is not finite.
+    bool see(const std::vector<double>& row, double volume);
+
+    // Exponent from which on the values of a component along a path are noise whose masses grow; infinite if there is none.
+    double noise(const LadderPath& path, Rows rows, std::size_t c);
+    // Whether the masses do not fall. Shells of less than the rounding of the largest mass that was seen do not tell. If they
+    // fall, adds what lies closer to an end or a pole, or farther out, than values are resolved.
+    bool diverge(const LadderPath& path, Rows rows, std::size_t c, double noise);
     // Adds so many times the mass of a part of a ridge.
     void add_unresolved(const Witness& part, double times);
     // Part of the integral of each component; empty where all is resolved.
@@ -36,12 +40,12 @@ class LadderMasses {
     static bool falls_less_than(double part, const LadderPath& path, Rows rows, std::size_t c);
     void add_unresolved(const LadderPath& path, std::size_t c, double mass);
     static bool is_suspicious(const LadderPath& path, Rows rows, std::size_t c);
-    bool is_negligible(const LadderPath& path, Rows rows, std::size_t c, std::span<const Witness> seen) const;
+    bool is_negligible(const LadderPath& path, Rows rows, std::size_t c) const;
     bool diverge_further(const LadderPath& path, std::size_t c);
     bool diverge_along(LadderPath path, std::size_t c);
     bool diverge_at_infinity(const LadderPath& path, std::size_t c);
     bool ridge_diverges_along(const LadderPath& path, std::size_t c);
-    double mass_beyond(const LadderPath& path, std::size_t c, double finest);
+    double mass_farther_out(const LadderPath& path, std::size_t c, double finest);
     double mass_of_rounding(const LadderPath& path, Rows rows, std::size_t c);
     double mass_beyond_shells(const LadderPath& path, Rows rows, std::size_t c);
     ShellValues values_along(const LadderPath& path, std::size_t c);
@@ -49,6 +53,7 @@ class LadderMasses {
 
     RawValues& raw_;
     LadderPaths& paths_;
+    std::vector<double> most_; // of the masses that were seen
     std::vector<double> unresolved_;
     // Parts of it: the largest mass of all paths that lead to one side of a pole.
     struct Added {

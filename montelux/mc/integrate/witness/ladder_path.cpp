@@ -34,7 +34,7 @@ int LadderPath::codimension() const {
 }
 
 double LadderPath::finest() const {
-    double least = finest_at_origin;
+    double least = std::min(finest_at_origin, precise_to);
     for (std::size_t d = 0; d < side.size(); ++d)
         if (side[d] != 0) least = std::min(least, (anchors[d].finest + std::log2(reach[d])) / rate(d));
     return std::min(least, std::max(finest_inside, finest_at_origin / codimension()));

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/domain.h"
+#include "montelux/mc/integrate/infinity.h"
 
 namespace montelux {
 
@@ -23,7 +24,8 @@ struct LadderPath {
     std::vector<Anchor> anchors;
     std::vector<double> side; // 0: the variable does not move
     std::vector<double> reach;
-    std::vector<int> rates = {}; // empty: 1
+    std::vector<int> rates = {};  // empty: 1
+    double precise_to = infinity; // exponent beyond which values are noise
 
     int rate(std::size_t d) const { return side[d] == 0 ? 0 : rates.empty() ? 1 : rates[d]; }
     // Shells at k have a volume of 2^(-k codimension).

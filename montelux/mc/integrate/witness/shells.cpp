@@ -1,10 +1,10 @@
 #include "montelux/mc/integrate/witness/shells.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "montelux/mc/integrate/infinity.h"
+#include "montelux/mc/integrate/witness/lost_digits.h"
 
 namespace montelux {
 namespace {
@@ -23,12 +23,6 @@ constexpr double least_growth = 3;
 constexpr double coarsest = 6; // least exponent of the innermost shells
 constexpr double of_digits =
     64; // exponents of zeros by cancellation; farther on intermediate results overflow
-// Parts of the exponent at which values are rounded to zero: the last five of 53 digits, and where values are precise to
-// 10 and to 21 digits.
-constexpr double rounded_part = 0.1, precise = 0.8, coarser = 0.6;
-// Second differences of log2 |g|: quanta of rounding give steps of one and less, powers none.
-constexpr double rough = 0.2, smooth = 0.05;
-constexpr double least_fall = 0.02; // of masses before rounding, for each octave
 
 std::vector<double> exponents(double from, double to) {
     std::vector<double> k;
@@ -53,58 +47,6 @@ double finest_exponent(const Domain& domain, std::size_t d, double u) {
 }
 
 namespace {
-
-// The largest exponent up to `finest` whose value is a number other than zero, and the value beyond it, for values that
-// have none from there on.
-struct LastValue {
-    double exponent, beyond;
-};
-LastValue last_value(const ShellValues& values, double finest) {
-    double known = 0, unknown = finest, beyond = 0;
-    constexpr int bisections = 12;
-    for (int i = 0; i < bisections; ++i) {
-        const std::array<double, 1> middle{0.5 * (known + unknown)};
-        const double g = values(middle)[0];
-        if (g > 0 && std::isfinite(g)) {
-            known = middle[0];
-        } else {
-            unknown = middle[0];
-            beyond = g;
-        }
-    }
-    return {known, beyond};
-}
-
-// Second differences of log2 |g| over `window` exponents up to one: the largest, of that sign which has the smaller one.
-// Steep slopes have one sign alone, quanta of rounding both.
-double roughness(const ShellValues& values, double exponent, double window) {
-    constexpr std::size_t points = 65;
-    std::vector<double> k(points);
-    for (std::size_t i = 0; i < points; ++i)
-        k[i] = exponent - window * (1 - static_cast<double>(i) / static_cast<double>(points - 1));
-    const std::vector<double> g = values(k);
-    double up = 0, down = 0;
-    for (std::size_t i = 1; i + 1 < points; ++i) {
-        const double difference = std::log2(g[i - 1]) - 2 * std::log2(g[i]) + std::log2(g[i + 1]);
-        up = std::max(up, difference);
-        down = std::max(down, -difference);
-    }
-    return std::min(up, down);
-}
-
-// Whether cancellation rounds values to zero beyond an exponent, as it does 1 - cos r: they lose their 53 digits at a steady
-// rate, so that there they are rough where those at some distance are smooth. What ends in truth is as rough as before.
-bool loses_digits(const ShellValues& values, double last) {
-    const double window = rounded_part * last;
-    return roughness(values, last, window) > rough && roughness(values, precise * last, window) < smooth;
-}
-
-// Octaves by which masses fall from one octave of the distance to the next, where values are still precise.
-double fall_before(const ShellValues& values, double last, int codimension) {
-    const std::array<double, 2> k{coarser * last, precise * last};
-    const std::vector<double> g = values(k);
-    return codimension + std::log2(g[0] / g[1]) / (k[1] - k[0]);
-}
 
 enum class Rounding { unlikely, likely, overflows };
 
@@ -133,7 +75,8 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
         const auto [last, beyond] = last_value(values, finest);
         if (beyond != 0 || (rounding == Rounding::overflows && last > of_digits))
             return masses_diverge_until(values, last, codimension, Rounding::unlikely);
-        return loses_digits(values, last) && fall_before(values, last, codimension) < least_fall;
+        const double lost = digits_lost_from(values, last);
+        return lost < infinity && std::isinf(mass_beyond(values, lost, codimension));
     }
     // Values that no longer grow are those of a narrow peak. Over three octaves those of a pole grow by 8^codimension or
     // more, but for oscillations.
@@ -148,18 +91,12 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
 
 } // namespace
 
-double mass_of_lost_digits(const ShellValues& values, double finest, int codimension) {
-    const auto [last, beyond] = last_value(values, finest);
-    if (beyond != 0 || !loses_digits(values, last)) return 0;
-    const double fall = fall_before(values, last, codimension);
-    if (fall < least_fall) return infinity;
-    const std::array<double, 1> k{precise * last};
-    return codimension * values(k)[0] * std::exp2(-codimension * k[0] - fall * (last - k[0])) / fall;
-}
-
 bool masses_diverge(const ShellValues& values, double finest, int codimension, bool overflows) {
-    return masses_diverge_until(values, finest, codimension,
-                                overflows ? Rounding::overflows : Rounding::likely);
+    if (!masses_diverge_until(values, finest, codimension,
+                              overflows ? Rounding::overflows : Rounding::likely))
+        return false;
+    const double from = noise_from(values, finest);
+    return from == infinity || std::isinf(mass_beyond(values, from, codimension));
 }
 
 } // namespace montelux

@@ -30,10 +30,7 @@ using ShellValues = std::function<std::vector<double>(std::span<const double> ex
 // with that over shells of half their exponents, where 1 / k gives a ratio of a half. True where they do not fall.
 // Where inner values are infinite, zero or not numbers, by overflow or rounding, coarser shells decide. Values that end
 // in truth have no mass beyond; `overflows`: zeros beyond 2^-64 are not such ends, but quotients by an infinite number.
+// Where cancellation makes inner values noise, the power that they followed before decides.
 bool masses_diverge(const ShellValues& values, double finest, int codimension, bool overflows = false);
-
-// Integral of |g| over the distances where cancellation has rounded values to zero, in units of the volume at exponent 0:
-// by the power that they followed before. 0 where nothing is rounded, infinite where the masses do not fall.
-double mass_of_lost_digits(const ShellValues& values, double finest, int codimension);
 
 } // namespace montelux

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/infinity.h"
@@ -191,6 +192,32 @@ TEST(FirstLook, TellsDivergenceBeforeNumeratorsAreRounded) {
     EXPECT_NEAR(convergent.unresolved[0], 0.32, 0.1);
     for (double cut : {1e-3, 1e-6, 1e-9, 1e-12})
         EXPECT_EQ(look_at([=](double x) { return x > cut ? 1 / x : 0; }, unit).divergence, "") << cut;
+}
+
+// The exponential's terms cancel to noise below 2^-26; what is seen there is no evidence.
+TEST(FirstLook, NoiseIsNoEvidence) {
+    const auto line = [](double x) { return (std::exp(x) - 1 - x) / std::pow(x, 2.9); };
+    const FirstLook look = look_at(line, Domain::interval(0, 1));
+    EXPECT_EQ(look.divergence, "");
+    double nearest = 1;
+    for (const Witness& w : look.witnesses) nearest = std::min(nearest, w.u[0]);
+    EXPECT_GT(nearest, 0x1p-26);
+    EXPECT_LT(nearest, 0x1p-16);
+    // Of 1 / (2 x^0.9) 2^(-2.6) / 0.2 lies below 2^-26.
+    ASSERT_EQ(look.unresolved.size(), 1u);
+    EXPECT_NEAR(look.unresolved[0], 0.82, 0.1);
+    EXPECT_EQ(
+        look_at([=](double x) { return line(x) / std::pow(x, 0.1); }, Domain::interval(0, 1)).divergence,
+        "x -> 0");
+    const auto far_out = [](double x) { return std::sqrt(x * x + 1) - x - 1 / (2 * x); };
+    EXPECT_EQ(look_at(far_out, Domain::interval(1, infinity)).divergence, "");
+    for (const auto& [power, place] : {std::pair(3.7, ""), std::pair(4.0, "x1 -> 0, x2 -> 0")}) {
+        const auto corner = [=](std::span<const double> x) {
+            const double sum = x[0] + x[1];
+            return (std::exp(sum) - 1 - sum) / std::pow(sum, power);
+        };
+        EXPECT_EQ(look_at(corner, Domain::unit_cube(2)).divergence, place);
+    }
 }
 
 // Large scales are no divergence, and what lies beyond the cube's points is measured.

@@ -1,23 +1,12 @@
+#include "test/mc/integrate/witness/shell_values.h"
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
-#include <vector>
 
-#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/witness/shells.h"
 
 namespace montelux {
 namespace {
-
-// |g| at distance r = 2^-k from a formula in r.
-template <typename F>
-ShellValues of(F f) {
-    return [f](std::span<const double> exponents) {
-        std::vector<double> g;
-        for (double k : exponents) g.push_back(f(std::exp2(-k)));
-        return g;
-    };
-}
 
 TEST(Shells, PowersDivergeFromTheCodimensionOn) {
     for (int codimension : {1, 2, 3}) {
@@ -85,18 +74,22 @@ TEST(Shells, DigitsLostByCancellationAreToldFromEnds) {
     }
 }
 
-// Below r = 2^-26.5 the cosine is one: 1 - cos r over r^p misses 2^(-26.5 (3 - p)) / (2 (3 - p)) there.
-TEST(Shells, MassOfLostDigits) {
-    for (double power : {2.2, 2.5, 2.8})
-        for (double finest : {46.0, finest_at_origin}) {
-            const ShellValues g = of([=](double r) { return (1 - std::cos(r)) / std::pow(r, power); });
-            const double missing = std::exp2(-26.5 * (3 - power)) / (2 * (3 - power));
-            EXPECT_NEAR(mass_of_lost_digits(g, finest, 1) / missing, 1, 0.1) << power;
+// Sums of terms that cancel are noise close to zero, whose masses grow.
+TEST(Shells, NoiseDoesNotDecide) {
+    const auto exponential = [](double r) { return std::abs(std::exp(r) - 1 - r); };
+    const auto hyperbolic_sine = [](double r) { return std::abs(std::exp(r) - std::exp(-r) - 2 * r); };
+    for (double finest : {46.0, finest_at_origin})
+        for (int codimension : {1, 2}) {
+            const auto over = [=](auto numerator, double power) {
+                return masses_diverge(
+                    of([=](double r) { return numerator(r) / std::pow(r, power + codimension); }), finest,
+                    codimension);
+            };
+            for (double power : {1.4, 1.7, 1.9}) EXPECT_FALSE(over(exponential, power)) << power;
+            for (double power : {2.0, 2.3}) EXPECT_TRUE(over(exponential, power)) << power;
+            for (double power : {2.4, 2.7, 2.9}) EXPECT_FALSE(over(hyperbolic_sine, power)) << power;
+            for (double power : {3.0, 3.3}) EXPECT_TRUE(over(hyperbolic_sine, power)) << power;
         }
-    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return r > 1e-6 ? 1 / std::sqrt(r) : 0; }), 46, 1), 0);
-    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return 1 / std::sqrt(r); }), 46, 1), 0);
-    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return (1 - std::cos(r)) / std::pow(r, 3.5); }), 46, 1),
-              infinity);
 }
 
 // A peak a few octaves wider than the finest shell: masses grow up to its width, and no pole's values stay as they are.

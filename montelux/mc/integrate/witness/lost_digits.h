@@ -1,0 +1,33 @@
+// Digits that cancellation loses in the shells around a point: there values are noise, and at last zero.
+#pragma once
+
+#include "montelux/mc/integrate/witness/shells.h"
+
+namespace montelux {
+
+// The largest exponent up to `finest` whose value is a number other than zero, and the value beyond it, for values that
+// have none from there on.
+struct LastValue {
+    double exponent, beyond;
+};
+LastValue last_value(const ShellValues& values, double finest);
+
+// Exponent from which on values are noise, as those of exp r - 1 - r are: as rough between near points as between those at
+// 64 times the distance, where an oscillation is smooth, and smooth farther out. Infinite if there is none up to `finest`.
+double noise_from(const ShellValues& values, double finest);
+
+// That exponent, or `last`, the exponent of the last value, if cancellation rounds values to zero beyond it. Infinite where
+// values have their digits, or end in truth.
+double digits_lost_from(const ShellValues& values, double last);
+
+// Part of the last exponent at which values are precise to 10 digits.
+inline constexpr double precise = 0.8;
+
+// Integral of |g| beyond the exponent where values have lost their digits, in units of the volume at exponent 0, by the
+// power that they followed before. Infinite where the masses do not fall.
+double mass_beyond(const ShellValues& values, double last, int codimension);
+
+// That mass where values end by rounding to zero; 0 where they do not.
+double mass_of_lost_digits(const ShellValues& values, double finest, int codimension);
+
+} // namespace montelux
