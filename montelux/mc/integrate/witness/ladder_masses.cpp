@@ -60,12 +60,16 @@ double LadderMasses::noise(const LadderPath& path, Rows rows, std::size_t c) {
 }
 
 bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, double noise) {
-    const bool suspected = is_suspicious(path, rows, c);
-    if (suspected && !is_negligible(path, rows, c) && diverge_further(path, c)) return true;
-    double mass = noise < infinity ? mass_beyond(values_along(path, c), noise, path.codimension())
-                                   : mass_of_rounding(path, rows, c);
-    // Shells may be rounded to zero from the second one on.
-    if (!suspected && path.codimension() == 1 && std::isinf(mass)) return true;
+    if (is_suspicious(path, rows, c) && !is_negligible(path, rows, c) && diverge_further(path, c))
+        return true;
+    double mass = 0;
+    if (noise < infinity) {
+        mass = mass_beyond(values_along(path, c), noise, path.codimension());
+    } else if (const Drop drop = drop_by_rounding(path, rows, c); drop.mass > 0) {
+        mass = drop.mass;
+        if (std::isinf(mass) && !is_negligible(path, rows, c, drop.shell)) return true;
+        if (faces_diverge(path, c, drop.shell)) return true;
+    }
     if (mass == 0 && path.codimension() == 1) mass = mass_beyond_shells(path, rows, c);
     add_unresolved(path, c, mass);
     return false;
@@ -94,21 +98,56 @@ void LadderMasses::add_unresolved(const Witness& part, double times) {
         unresolved_[c] += times * std::abs(part.value[c]) * part.volume;
 }
 
-// Mass where values are rounded to zero, in units of the volume at exponent 0.
-double LadderMasses::mass_of_rounding(const LadderPath& path, Rows rows, std::size_t c) {
-    constexpr double far_in = 120;  // exponent beyond that of cancellations, where powers are still doubles
-    constexpr double far_out = 0.5; // and one outside of the ladder
-    if (!path.rates.empty()) return 0;
+LadderMasses::Drop LadderMasses::drop_by_rounding(const LadderPath& path, Rows rows, std::size_t c) {
+    constexpr double far_out = 0.5; // exponent outside of the ladder
+    if (!path.rates.empty()) return {};
     const ShellValues values = values_along(path, c);
     const auto value = [&](double exponent) { return values(std::array<double, 1>{exponent})[0]; };
-    const std::size_t last = last_shell(rows, c);
-    if (rows[last][c] == 0) { // but perhaps in the first shell
-        if (!(std::abs(rows[0][c]) > growing * value(far_out))) return 0;
-    } else {
-        if (!(std::abs(rows[last][c]) > growing * std::abs(rows[last - 1][c]))) return 0;
-        if (last + 1 == ladder.size() && value(std::min(far_in, path.finest())) > 0) return 0;
+    for (std::size_t i = ladder.size(); i-- > 0;) {
+        const double g = std::abs(rows[i][c]);
+        const bool is_last = i + 1 == ladder.size();
+        if (i == 0 && rows[1][c] != 0) continue;
+        if (!is_last && !(g > growing * std::abs(rows[i + 1][c]))) continue;
+        if (!(g > growing * (i > 0 ? std::abs(rows[i - 1][c]) : value(far_out)))) continue;
+        if (is_last && !(g > growing * value(std::min(beyond_digits, path.finest())))) continue;
+        if (const double mass = mass_of_rounding(path, c, i); mass > 0) return {i, mass};
     }
-    return mass_of_lost_digits(values, path.finest(), path.codimension());
+    return {};
+}
+
+// Mass beyond a drop after a shell, in units of the volume at exponent 0.
+double LadderMasses::mass_of_rounding(const LadderPath& path, std::size_t c, std::size_t shell) {
+    const double from = exponent_of(path, shell), to = shell + 1 < ladder.size()
+                                                           ? exponent_of(path, shell + 1)
+                                                           : std::min(beyond_digits, path.finest());
+    const double mass = mass_of_lost_digits(values_along(path, c), from, to, path.codimension());
+    if (mass < infinity || path.codimension() == 1) return mass;
+    LadderPath other = path; // a diagonal may be a ridge
+    paths_.vary(other);
+    return mass_of_lost_digits(values_along(other, c), from, to, path.codimension());
+}
+
+// Adds what is rounded to zero on faces and edges that meet at a place, or planes through it: some variables move and the others
+// are generic. Whether masses do not fall there.
+bool LadderMasses::faces_diverge(const LadderPath& path, std::size_t c, std::size_t shell) {
+    constexpr std::size_t most_variables = 3, most_places = 4;
+    const std::size_t n = path.side.size();
+    if (path.codimension() != static_cast<int>(n) || n == 1 || n > most_variables) return false;
+    if (places_of_faces_ == most_places) return false;
+    ++places_of_faces_;
+    const std::vector<double> through = paths_.generic_point();
+    for (unsigned moving = 1; moving + 1 < 1U << n; ++moving) {
+        LadderPath face = path;
+        for (std::size_t d = 0; d < n; ++d)
+            if ((moving >> d & 1) == 0) {
+                face.side[d] = 0;
+                face.anchors[d].u = through[d];
+            }
+        const double mass = mass_of_rounding(face, c, shell);
+        if (std::isinf(mass)) return true;
+        add_unresolved(face, c, mass);
+    }
+    return false;
 }
 
 // Mass closer to a place, or farther out, than the shells of a path of one variable, in units of the distance at exponent 0:
@@ -151,11 +190,12 @@ bool LadderMasses::is_suspicious(const LadderPath& path, Rows rows, std::size_t 
 
 bool LadderMasses::is_negligible(const LadderPath& path, Rows rows, std::size_t c) const {
     const std::size_t last = last_shell(rows, c);
-    double inner = 0;
-    for (std::size_t i : {last - 1, last})
-        inner =
-            std::max(inner, std::abs(rows[i][c]) * path.volume(exponent_of(path, i), paths_.widths(path)));
-    return finest_at_origin * inner < std::numeric_limits<double>::epsilon() * most_[c];
+    return is_negligible(path, rows, c, last - 1) && is_negligible(path, rows, c, last);
+}
+
+bool LadderMasses::is_negligible(const LadderPath& path, Rows rows, std::size_t c, std::size_t shell) const {
+    const double mass = std::abs(rows[shell][c]) * path.volume(exponent_of(path, shell), paths_.widths(path));
+    return finest_at_origin * mass < std::numeric_limits<double>::epsilon() * most_[c];
 }
 
 bool LadderMasses::diverge_further(const LadderPath& path, std::size_t c) {
@@ -192,8 +232,22 @@ bool LadderMasses::diverge_at_infinity(const LadderPath& path, std::size_t c) {
     // Overflow: infinite from half of the way on.
     const std::array<double, 3> far_out{0.5 * finest, 0.75 * finest, finest};
     const std::vector<double> g = values(far_out);
-    return std::ranges::all_of(g, [](double v) { return std::isinf(v); }) ||
-           masses_diverge(values, finest, path.codimension(), true);
+    if (std::ranges::all_of(g, [](double v) { return std::isinf(v); }))
+        return is_largest_before_overflow(values, finest, path.codimension());
+    return masses_diverge(values, finest, path.codimension(), true);
+}
+
+// Whether the last mass before values overflow is the largest. Intermediate results may overflow where a difference has long been
+// rounded to zero, or to noise.
+bool LadderMasses::is_largest_before_overflow(const ShellValues& values, double finest, int codimension) {
+    const LastValue last = last_value(values, 0, finest);
+    if (last.beyond == 0) return false;
+    const std::array<double, 4> exponents{0.25 * last.exponent, 0.5 * last.exponent, 0.75 * last.exponent,
+                                          last.exponent};
+    const std::vector<double> g = values(exponents);
+    for (std::size_t i = 0; i < g.size(); ++i)
+        if (g[i] * std::exp2(codimension * (last.exponent - exponents[i])) > g.back()) return false;
+    return true;
 }
 
 // Mass that lies farther out than the shell at `finest`, in units of that shell's; 0 where that has none.

@@ -41,19 +41,29 @@ class LadderMasses {
     void add_unresolved(const LadderPath& path, std::size_t c, double mass);
     static bool is_suspicious(const LadderPath& path, Rows rows, std::size_t c);
     bool is_negligible(const LadderPath& path, Rows rows, std::size_t c) const;
+    bool is_negligible(const LadderPath& path, Rows rows, std::size_t c, std::size_t shell) const;
     bool diverge_further(const LadderPath& path, std::size_t c);
     bool diverge_along(LadderPath path, std::size_t c);
     bool diverge_at_infinity(const LadderPath& path, std::size_t c);
+    static bool is_largest_before_overflow(const ShellValues& values, double finest, int codimension);
     bool ridge_diverges_along(const LadderPath& path, std::size_t c);
     double mass_farther_out(const LadderPath& path, std::size_t c, double finest);
-    double mass_of_rounding(const LadderPath& path, Rows rows, std::size_t c);
+    // The last shell to which values rise and after which they drop by rounding, and the mass beyond; none where that is 0.
+    struct Drop {
+        std::size_t shell = 0;
+        double mass = 0; // in units of the volume at exponent 0
+    };
+    Drop drop_by_rounding(const LadderPath& path, Rows rows, std::size_t c);
+    double mass_of_rounding(const LadderPath& path, std::size_t c, std::size_t shell);
+    bool faces_diverge(const LadderPath& path, std::size_t c, std::size_t shell);
     double mass_beyond_shells(const LadderPath& path, Rows rows, std::size_t c);
     ShellValues values_along(const LadderPath& path, std::size_t c);
     ShellValues values_far_out(const LadderPath& path, std::size_t c);
 
     RawValues& raw_;
     LadderPaths& paths_;
-    std::vector<double> most_; // of the masses that were seen
+    std::vector<double> most_;        // of the masses that were seen
+    std::size_t places_of_faces_ = 0; // that were examined
     std::vector<double> unresolved_;
     // Parts of it: the largest mass of all paths that lead to one side of a pole.
     struct Added {

@@ -63,7 +63,7 @@ LadderPaths::LadderPaths(const Domain& domain, std::size_t dimensions,
     for (double u : {0.0, 1.0, 0.5}) {
         places_.emplace_back();
         for (std::size_t d = 0; d < n_; ++d) {
-            const Anchor a{u, ranges.empty() ? finest_inside : finest_exponent(domain_, d, u)};
+            const Anchor a{u, finest_exponent(domain_, d, u)};
             places_.back().push_back(a);
             anchors_[d].push_back(a);
         }

@@ -15,6 +15,7 @@ namespace {
 constexpr double rounded_part = 0.1, coarser = 0.6;
 // Second differences of log2 |g|: quanta of rounding give steps of one and less, powers none.
 constexpr double rough = 0.2, smooth = 0.05;
+constexpr double sudden = 2;        // factor of a drop from one value to the next
 constexpr double least_fall = 0.02; // of masses before rounding, for each octave
 // Distances of points between which noise is as rough, in octaves.
 constexpr double near = 0x1p-14, wide = 0x1p-8;
@@ -71,20 +72,20 @@ bool is_rounded_to_zero(const ShellValues& values, double last) {
 
 } // namespace
 
-LastValue last_value(const ShellValues& values, double finest) {
-    double known = 0, unknown = finest, beyond = 0;
-    constexpr int bisections = 12;
+LastValue last_value(const ShellValues& values, double from, double to, double floor, int bisections) {
+    double known = from, unknown = to, value = 0, beyond = 0;
     for (int i = 0; i < bisections; ++i) {
         const std::array<double, 1> middle{0.5 * (known + unknown)};
         const double g = values(middle)[0];
-        if (g > 0 && std::isfinite(g)) {
+        if (g > floor && std::isfinite(g)) {
             known = middle[0];
+            value = g;
         } else {
             unknown = middle[0];
             beyond = g;
         }
     }
-    return {known, beyond};
+    return {known, value, beyond};
 }
 
 double noise_from(const ShellValues& values, double finest) {
@@ -116,9 +117,12 @@ double mass_beyond(const ShellValues& values, double last, int codimension) {
     return codimension * values(k)[0] * std::exp2(-codimension * k[0] - fall * (last - k[0])) / fall;
 }
 
-double mass_of_lost_digits(const ShellValues& values, double finest, int codimension) {
-    const auto [last, beyond] = last_value(values, finest);
-    const double lost = beyond == 0 ? digits_lost_from(values, last) : infinity;
+double mass_of_lost_digits(const ShellValues& values, double from, double to, int codimension) {
+    const std::array<double, 1> k{from};
+    constexpr int bisections = 7; // few, since most peaks drop smoothly
+    const LastValue last = last_value(values, from, to, values(k)[0] / sudden, bisections);
+    if (!std::isfinite(last.beyond) || !(last.value > sudden * last.beyond)) return 0;
+    const double lost = digits_lost_from(values, last.exponent);
     return lost < infinity ? mass_beyond(values, lost, codimension) : 0;
 }
 

@@ -5,21 +5,24 @@
 
 namespace montelux {
 
-// The largest exponent up to `finest` whose value is a number other than zero, and the value beyond it, for values that
+// The largest exponent between two whose value is a number above a floor, that value, and the one beyond it, for values that
 // have none from there on.
 struct LastValue {
-    double exponent, beyond;
+    double exponent, value, beyond;
 };
-LastValue last_value(const ShellValues& values, double finest);
+LastValue last_value(const ShellValues& values, double from, double to, double floor = 0,
+                     int bisections = 12);
 
 // Exponent from which on values are noise, as those of exp r - 1 - r are: as rough between near points as between those at
 // 64 times the distance, where an oscillation is smooth, and smooth farther out. Infinite if there is none up to `finest`.
 double noise_from(const ShellValues& values, double finest);
 
-// That exponent, or `last`, the exponent of the last value, if cancellation rounds values to zero beyond it. Infinite where
+// That exponent, or `last`, the exponent of the last value, if cancellation rounds a term to zero beyond it. Infinite where
 // values have their digits, or end in truth.
 double digits_lost_from(const ShellValues& values, double last);
 
+// Exponent beyond that of cancellations, where powers are still doubles.
+inline constexpr double beyond_digits = 120;
 // Part of the last exponent at which values are precise to 10 digits.
 inline constexpr double precise = 0.8;
 
@@ -27,7 +30,8 @@ inline constexpr double precise = 0.8;
 // power that they followed before. Infinite where the masses do not fall.
 double mass_beyond(const ShellValues& values, double last, int codimension);
 
-// That mass where values end by rounding to zero; 0 where they do not.
-double mass_of_lost_digits(const ShellValues& values, double finest, int codimension);
+// That mass where values that grow from one exponent end before another one, or drop to those of another term, by rounding to
+// zero; 0 where they do not.
+double mass_of_lost_digits(const ShellValues& values, double from, double to, int codimension);
 
 } // namespace montelux

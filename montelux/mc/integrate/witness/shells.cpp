@@ -20,6 +20,7 @@ constexpr double noise = 0.93; // factor for masses that oscillate
 constexpr double steady_ratio = 0.25, constant_ratio = 0.98;
 // Growth of |g| over three octaves towards a pole; four times that for each variable more.
 constexpr double least_growth = 3;
+constexpr double flat = 0.01;  // relative difference of values that do not grow
 constexpr double coarsest = 6; // least exponent of the innermost shells
 constexpr double of_digits =
     64; // exponents of zeros by cancellation; farther on intermediate results overflow
@@ -34,7 +35,7 @@ std::vector<double> exponents(double from, double to) {
 } // namespace
 
 double finest_exponent(const Domain& domain, std::size_t d, double u) {
-    if (domain.ranges().empty()) return finest_inside;
+    if (domain.ranges().empty()) return u < 0x1p-60 ? finest_at_origin : finest_inside;
     const Range range = domain.ranges()[d];
     const double all = range.upper - range.lower, width = std::isfinite(all) ? all : 1;
     // Towards the lower end coordinates are denser, and so is x towards zero.
@@ -72,7 +73,7 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     // Infinite, zero or no number, by overflow or rounding: the shells up to there tell.
     if (rounded) {
         if (rounding == Rounding::unlikely) return false;
-        const auto [last, beyond] = last_value(values, finest);
+        const auto [last, value, beyond] = last_value(values, 0, finest);
         if (beyond != 0 || (rounding == Rounding::overflows && last > of_digits))
             return masses_diverge_until(values, last, codimension, Rounding::unlikely);
         const double lost = digits_lost_from(values, last);
@@ -86,6 +87,9 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
     const double growth = std::pow(least_growth * std::exp2(2 * (codimension - 1)), octaves / 3);
     // Within the inner range, too: the outer one may lie beyond all that is there.
     if (!(sum_inner > 0 && last >= growth * earlier)) return false;
+    // A jump has constant values on both sides.
+    const auto is_flat = [&](std::size_t i) { return std::abs(g_inner[i] / g_inner[i - 1] - 1) < flat; };
+    if (is_flat(shells - 1) && is_flat(shells - 5)) return false;
     return innermost >= (sum_inner >= noise * harmonic * sum_outer ? steady_ratio : constant_ratio) * before;
 }
 

@@ -212,12 +212,68 @@ TEST(FirstLook, NoiseIsNoEvidence) {
     const auto far_out = [](double x) { return std::sqrt(x * x + 1) - x - 1 / (2 * x); };
     EXPECT_EQ(look_at(far_out, Domain::interval(1, infinity)).divergence, "");
     for (const auto& [power, place] : {std::pair(3.7, ""), std::pair(4.0, "x1 -> 0, x2 -> 0")}) {
-        const auto corner = [=](std::span<const double> x) {
+        const auto corner = [power = power](std::span<const double> x) {
             const double sum = x[0] + x[1];
             return (std::exp(sum) - 1 - sum) / std::pow(sum, power);
         };
         EXPECT_EQ(look_at(corner, Domain::unit_cube(2)).divergence, place);
     }
+}
+
+// What is rounded to zero hides behind another term, on faces and edges, and in planes inside.
+TEST(FirstLook, DigitsAreLostBesideOtherTermsAndOnFaces) {
+    const Domain unit = Domain::interval(0, 1);
+    const auto cosine = [](double r, double power) { return (1 - std::cos(r)) / std::pow(r, power); };
+    for (double constant : {0.01, 1.0, 100.0})
+        for (double slope : {0.0, 1000.0}) {
+            const auto with = [=](auto f) { return [=](double x) { return f(x) + constant + slope * x; }; };
+            const auto diverges = [&](auto f) { return look_at(with(f), unit).divergence == "x -> 0"; };
+            EXPECT_TRUE(diverges([=](double x) { return cosine(x, 3); })) << constant << " " << slope;
+            EXPECT_TRUE(diverges([](double x) { return std::log(1 + x) / (x * x); }))
+                << constant << " " << slope;
+            EXPECT_FALSE(diverges([=](double x) { return cosine(x, 2.8); })) << constant << " " << slope;
+        }
+    // 2^(-26.5 * 0.2) / 0.4 of it lies below 2^-26.5.
+    const FirstLook line = look_at([=](double x) { return cosine(x, 2.8) + 1; }, unit);
+    ASSERT_EQ(line.unresolved.size(), 1u);
+    EXPECT_NEAR(line.unresolved[0], 0.063, 0.01);
+    const auto plane = [=](std::span<const double> x) {
+        return cosine(std::abs(x[0] - 0.4), 2.8) * (1 + x[1]);
+    };
+    const FirstLook inside = look_at(plane, Domain::unit_cube(2), {{0.4, 0.5}});
+    ASSERT_EQ(inside.unresolved.size(), 1u);
+    EXPECT_NEAR(inside.unresolved[0], 2 * 0.063 * 1.5, 0.1);
+    const auto edge = [=](std::span<const double> x) {
+        return cosine(std::hypot(x[0], x[1]), 4) * (1 + x[2]);
+    };
+    EXPECT_NE(look_at(edge, Domain::unit_cube(3)).divergence, "");
+    const auto converges = [=](std::span<const double> x) {
+        return cosine(std::hypot(x[0], x[1]), 3.5) * (1 + x[2]);
+    };
+    EXPECT_EQ(look_at(converges, Domain::unit_cube(3)).divergence, "");
+}
+
+// Where a difference has long been rounded to zero, or to noise, overflow of its terms is no divergence.
+TEST(FirstLook, OverflowAfterTheDigitsAreLostIsNoDivergence) {
+    const Domain half_line = Domain::interval(0, infinity);
+    const auto diverges = [&](auto f) { return look_at(f, half_line).divergence == "x -> inf"; };
+    EXPECT_FALSE(diverges([](double x) { return std::log(1 + std::exp(x)) - x; }));
+    EXPECT_FALSE(diverges([](double x) { return std::log(std::cosh(x)) - x + std::log(2.0); }));
+    EXPECT_TRUE(diverges([](double x) { return std::exp(x); }));
+    EXPECT_TRUE(diverges([](double x) { return std::exp(x * x); }));
+    EXPECT_TRUE(diverges([](double x) { return std::log(1 + std::exp(x)); }));
+}
+
+// Towards the centre of a ball doubles are dense.
+TEST(FirstLook, PowersNearTheLimitConvergeAtTheCentreOfABall) {
+    const Domain ball = Domain::ball({0, 0, 0});
+    const auto power = [](double p) {
+        return [p](std::span<const double> x) {
+            return std::pow(x[0] * x[0] + x[1] * x[1] + x[2] * x[2], -p / 2);
+        };
+    };
+    EXPECT_EQ(look_at(power(2.9), ball).divergence, "");
+    EXPECT_NE(look_at(power(3), ball).divergence, "");
 }
 
 // Large scales are no divergence, and what lies beyond the cube's points is measured.

@@ -10,16 +10,22 @@ namespace {
 
 // Below r = 2^-26.5 the cosine is one: 1 - cos r over r^p misses 2^(-26.5 (3 - p)) / (2 (3 - p)) there.
 TEST(LostDigits, MassOfWhatIsRoundedToZero) {
-    for (double power : {2.2, 2.5, 2.8})
-        for (double finest : {46.0, finest_at_origin}) {
-            const ShellValues g = of([=](double r) { return (1 - std::cos(r)) / std::pow(r, power); });
-            const double missing = std::exp2(-26.5 * (3 - power)) / (2 * (3 - power));
-            EXPECT_NEAR(mass_of_lost_digits(g, finest, 1) / missing, 1, 0.1) << power;
-        }
-    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return r > 1e-6 ? 1 / std::sqrt(r) : 0; }), 46, 1), 0);
-    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return 1 / std::sqrt(r); }), 46, 1), 0);
-    EXPECT_EQ(mass_of_lost_digits(of([](double r) { return (1 - std::cos(r)) / std::pow(r, 3.5); }), 46, 1),
-              infinity);
+    struct Case {
+        double power, constant, slope;
+    };
+    for (const Case& c :
+         {Case{2.2, 0, 0}, Case{2.5, 0, 0}, Case{2.8, 0, 0}, Case{2.8, 10, 0}, Case{2.8, 0, 1000}}) {
+        const ShellValues g =
+            of([=](double r) { return (1 - std::cos(r)) / std::pow(r, c.power) + c.constant + c.slope * r; });
+        const double missing = std::exp2(-26.5 * (3 - c.power)) / (2 * (3 - c.power));
+        EXPECT_NEAR(mass_of_lost_digits(g, 24, 36, 1) / missing, 1, 0.1) << c.power;
+    }
+    const auto mass = [](auto f) { return mass_of_lost_digits(of(f), 15, 24, 1); };
+    EXPECT_EQ(mass([](double r) { return r > 1e-6 ? 1 / std::sqrt(r) : 0; }), 0);
+    EXPECT_EQ(mass([](double r) { return 1 / std::sqrt(r); }), 0);
+    EXPECT_EQ(mass([](double r) { return std::exp(-1e-6 / r) / r; }), 0);
+    const auto diverges = [](double r) { return (1 - std::cos(r)) / std::pow(r, 3.5) + 1; };
+    EXPECT_EQ(mass_of_lost_digits(of(diverges), 24, 36, 1), infinity);
 }
 
 // Noise is as large as the value where the terms that cancel have lost all digits of it: at exp r - 1 - r = 2^-53.

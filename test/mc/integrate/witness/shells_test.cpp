@@ -102,6 +102,10 @@ TEST(Shells, NarrowPeaksAreNoPoles) {
                 masses_diverge(of([=](double r) { return 1 / (r * r + width * width); }), 46, codimension))
                 << width;
         }
+    // A jump, as at a point beside the place where cancellation rounds a term to zero.
+    for (double exponent = 30; exponent < 44.5; exponent += 0.5)
+        EXPECT_FALSE(masses_diverge(of([=](double r) { return r < std::exp2(-exponent) ? 1e6 : 10; }), 46, 1))
+            << exponent;
 }
 
 TEST(Shells, DistancesStayAboveTheSpacingOfDoubles) {
