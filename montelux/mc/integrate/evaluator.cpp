@@ -71,6 +71,20 @@ void Evaluator::scale(ValueBatch g, const double* volume) const {
     }
 }
 
+void Evaluator::silence(const PointBatch& u, ValueBatch g) const {
+    for (const NoiseBox& box : noise_) {
+        std::span<double> values = g.component(box.component);
+        for (std::size_t i = 0; i < values.size(); ++i) {
+            bool inside = true;
+            for (std::size_t d = 0; d < box.lower.size() && inside; ++d) {
+                const double at = u(i, static_cast<int>(d));
+                inside = at >= box.lower[d] && at <= box.upper[d];
+            }
+            if (inside) values[i] = 0;
+        }
+    }
+}
+
 void Evaluator::complete(ValueBatch g, const double* volume, const std::function<void(PointBuffer&)>& points,
                          NonFiniteCount& non_finite) const {
     if (!domain_.is_unit_cube()) scale(g, volume);
@@ -78,9 +92,10 @@ void Evaluator::complete(ValueBatch g, const double* volume, const std::function
     for (int c = 0; c < g.components(); ++c)
         for (double v : g.component(c)) sum += v * 0;
     const bool finite = sum == 0;
-    if (finite && !(largest_ && largest_->learns(g))) return;
+    if (finite && noise_.empty() && !(largest_ && largest_->learns(g))) return;
     PointBuffer u(g.count(), domain_.uniforms());
     points(u);
+    silence(u, g);
     if (!finite) {
         PointBuffer x(g.count(), domain_.dimensions());
         std::vector<double> ignored(g.count(), 1.0);
@@ -99,6 +114,7 @@ void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& no
                            std::vector<std::size_t>* where) const {
     if (domain_.is_unit_cube()) {
         integrand_(u, g);
+        silence(u, g);
         screen(u, g, non_finite, where);
         if (largest_) largest_->add(u, g);
         return;
@@ -113,6 +129,7 @@ void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& no
     domain_.map(u, x, volume);
     integrand_(x, g);
     scale(g, volume.data());
+    silence(u, g);
     screen(x, g, non_finite, where);
     if (largest_) largest_->add(u, g);
     x_buffer = std::move(x);

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/domain.h"
@@ -27,6 +28,12 @@ struct NonFiniteCount {
     void merge(const NonFiniteCount& later);
 };
 
+// A box of the unit cube in which a component counts as zero, since its values are noise there.
+struct NoiseBox {
+    int component;
+    std::vector<double> lower, upper;
+};
+
 // g(u) = f(x(u)) |dx/du|, whose integral over the unit cube is that of f over the domain. One evaluator
 // serves all threads.
 class Evaluator {
@@ -44,6 +51,8 @@ class Evaluator {
     // Largest values from now on, where a place for them is given; outlives its use.
     void keep_largest(LargestValues* largest) { largest_ = largest; }
     const LargestValues* kept_largest() const { return largest_; }
+    // Boxes in which values count as zero from now on.
+    void leave_out(std::vector<NoiseBox> noise) { noise_ = std::move(noise); }
 
     // g at points u; values that are not finite become zero and are counted, and the indices of their points
     // added to `where`, if that is given. Scratch memory is the thread's.
@@ -61,6 +70,7 @@ class Evaluator {
   private:
     // Multiplies by the change of volume: the constant one, or else `volume` of each point.
     void scale(ValueBatch g, const double* volume) const;
+    void silence(const PointBatch& u, ValueBatch g) const;
     void screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite,
                 std::vector<std::size_t>* where = nullptr) const;
 
@@ -68,6 +78,7 @@ class Evaluator {
     Domain domain_;
     NonFinitePolicy policy_;
     LargestValues* largest_ = nullptr;
+    std::vector<NoiseBox> noise_;
 };
 
 } // namespace montelux

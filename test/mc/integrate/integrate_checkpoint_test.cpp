@@ -60,6 +60,25 @@ TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUninterruptedOne) {
         EXPECT_TRUE(same_but_for_time(end, uninterrupted));
     }
 }
+// Values that are noise near zero are left out in the rest of the run, too.
+TEST(IntegrateCheckpoint, NoiseIsLeftOutAfterAResumption) {
+    const Integrand f = [](double x) { return (std::exp(x) - 1 - x) / std::pow(x, 2.8); };
+    const Domain unit = Domain::interval(0, 1);
+    const Budget budget{.evaluations = 200'000};
+    const IntegrationResult uninterrupted = integrate(f, unit, Method::named("vegas"), budget, {.seed = 3});
+    EXPECT_LT(std::abs(uninterrupted.value[0] - 2.660806), 4 * uninterrupted.standard_error[0]);
+    EXPECT_LT(uninterrupted.standard_error[0], 0.2);
+    const CheckpointFile file;
+    CancelFlag cancel;
+    IntegrationOptions options{.seed = 3, .cancel = &cancel, .checkpoint = file.path()};
+    options.progress = [&](const IntegrationResult& r) {
+        if (r.evaluations >= 10'000) cancel.request();
+    };
+    EXPECT_LT(integrate(f, unit, Method::named("vegas"), budget, options).evaluations, budget.evaluations);
+    const IntegrationResult rest = integrate(f, unit, Method::named("vegas"), budget,
+                                             {.seed = 3, .checkpoint = file.path(), .resume = true});
+    EXPECT_TRUE(same_but_for_time(rest, uninterrupted));
+}
 // Cancelled in the middle of a step, by the integrand itself, at calls of all kinds: pilots, training,
 // sampling.
 TEST(IntegrateCheckpoint, EveryMethodResumesToTheSameBits) {

@@ -32,6 +32,18 @@ bool lies_within(const Witness& peak, const std::vector<double>& u) {
     return true;
 }
 
+void save(StateWriter& state, const NoiseBox& box) {
+    state.put(box.component);
+    state.put(box.lower);
+    state.put(box.upper);
+}
+
+void load(StateReader& state, NoiseBox& box) {
+    box.component = state.get<int>();
+    box.lower = state.get_doubles();
+    box.upper = state.get_doubles();
+}
+
 template <typename T>
 void save_all(StateWriter& state, const std::vector<T>& all) {
     state.put(static_cast<std::uint64_t>(all.size()));
@@ -55,6 +67,7 @@ Evidence::~Evidence() { evaluator_.keep_largest(nullptr); }
 
 void Evidence::look(const Integrand& f, std::uint64_t most_evaluations) {
     look_ = first_look(evaluator_, {f.landmarks(), f.guides(), most_evaluations, seed_});
+    evaluator_.leave_out(look_.noise);
     evaluations_ += look_.evaluations;
     divergence_ = look_.divergence;
     largest_.clear();
@@ -203,6 +216,7 @@ void Evidence::save(StateWriter& state) const {
     save_all(state, look_.witnesses);
     save_all(state, look_.peaks);
     save_all(state, look_.slow);
+    save_all(state, look_.noise);
     state.put(look_.found_by_chance);
     state.put(look_.evaluations);
     state.put(look_.unresolved);
@@ -221,6 +235,8 @@ void Evidence::load(StateReader& state) {
     load_all(state, look_.witnesses);
     load_all(state, look_.peaks);
     load_all(state, look_.slow);
+    load_all(state, look_.noise);
+    evaluator_.leave_out(look_.noise);
     look_.found_by_chance = state.get<int>() != 0;
     look_.evaluations = state.get_word();
     look_.unresolved = state.get_doubles();

@@ -94,8 +94,11 @@ class Look {
             for (std::size_t c = 0; c < components(); ++c) {
                 const double of_component = masses_.noise(paths[p], along, c);
                 noise = std::min(noise, of_component);
-                if (tests && look_.divergence.empty() && masses_.diverge(paths[p], along, c, of_component))
-                    look_.divergence = place_of(paths[p]);
+                if (!tests || !look_.divergence.empty()) continue;
+                if (masses_.diverge(paths[p], along, c, of_component)) look_.divergence = place_of(paths[p]);
+                if (of_component == infinity) continue;
+                const auto [lower, upper] = paths[p].within(of_component);
+                look_.noise.push_back({static_cast<int>(c), lower, upper});
             }
             if (noise == infinity) continue;
             // What noise shows is no evidence.

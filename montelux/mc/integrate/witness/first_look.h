@@ -21,6 +21,8 @@ struct FirstLook {
     // Part of the integral of |g_c| that lies closer to an end or a pole of one variable, or farther out, than doubles
     // resolve; one for each component, or none.
     std::vector<double> unresolved;
+    // Where values are noise: the part of the integral that lies there is unresolved.
+    std::vector<NoiseBox> noise;
     // Ways to ends along which |g| grows fast, though its mass falls.
     std::vector<SlowShells> slow;
     // Where the mass of |g| in dyadic shells does not fall, as "x -> 0"; empty where it falls everywhere.

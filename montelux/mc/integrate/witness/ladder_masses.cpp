@@ -65,6 +65,7 @@ bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, dou
     double mass = 0;
     if (noise < infinity) {
         mass = mass_beyond(values_along(path, c), noise, path.codimension());
+        if (std::isinf(mass) && path.codimension() == 1) return true;
     } else if (const Drop drop = drop_by_rounding(path, rows, c); drop.mass > 0) {
         mass = drop.mass;
         if (std::isinf(mass) && !is_negligible(path, rows, c, drop.shell)) return true;

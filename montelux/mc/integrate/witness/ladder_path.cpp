@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <tuple>
 #include <utility>
 
 #include "montelux/mc/integrate/points.h"
@@ -53,6 +54,14 @@ std::vector<double> LadderPath::at(double exponent) const {
         u[d] = std::clamp(anchors[d].u + side[d] * reach[d] * off_grid * std::exp2(-rate(d) * exponent),
                           std::numeric_limits<double>::min(), 1 - 0x1p-53);
     return u;
+}
+
+std::pair<std::vector<double>, std::vector<double>> LadderPath::within(double exponent) const {
+    std::vector<double> lower(side.size(), 0.0), upper(side.size(), 1.0);
+    const std::vector<double> farthest = at(exponent);
+    for (std::size_t d = 0; d < side.size(); ++d)
+        if (side[d] != 0) std::tie(lower[d], upper[d]) = std::minmax(anchors[d].u, farthest[d]);
+    return {lower, upper};
 }
 
 LadderPaths::LadderPaths(const Domain& domain, std::size_t dimensions,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/domain.h"
@@ -34,6 +35,8 @@ struct LadderPath {
     // Volume of the shell around the anchor; `across`: widths in the variables that do not move.
     double volume(double exponent, const std::vector<double>& across) const;
     std::vector<double> at(double exponent) const;
+    // The box of what is closer to the anchor, on this side; all of the variables that do not move.
+    std::pair<std::vector<double>, std::vector<double>> within(double exponent) const;
 };
 
 // The ladders of one look. (seed, order of the calls) determine what is random.

@@ -29,8 +29,10 @@ std::vector<double> second_differences(const ShellValues& values, double exponen
     std::vector<double> k(points), differences;
     for (std::size_t i = 0; i < points; ++i) k[i] = exponent - step * static_cast<double>(points - 1 - i);
     const std::vector<double> g = values(k);
-    for (std::size_t i = 1; i + 1 < points; ++i)
-        differences.push_back(std::log2(g[i - 1]) - 2 * std::log2(g[i]) + std::log2(g[i + 1]));
+    for (std::size_t i = 1; i + 1 < points; ++i) {
+        const bool zero = g[i - 1] == 0 && g[i] == 0 && g[i + 1] == 0;
+        differences.push_back(zero ? 0 : std::log2(g[i - 1]) - 2 * std::log2(g[i]) + std::log2(g[i + 1]));
+    }
     return differences;
 }
 

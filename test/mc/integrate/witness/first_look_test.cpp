@@ -203,6 +203,10 @@ TEST(FirstLook, NoiseIsNoEvidence) {
     for (const Witness& w : look.witnesses) nearest = std::min(nearest, w.u[0]);
     EXPECT_GT(nearest, 0x1p-26);
     EXPECT_LT(nearest, 0x1p-16);
+    ASSERT_EQ(look.noise.size(), 1u);
+    EXPECT_EQ(look.noise[0].component, 0);
+    EXPECT_EQ(look.noise[0].lower, std::vector<double>{0});
+    EXPECT_NEAR(std::log2(look.noise[0].upper[0]), -26, 2);
     // Of 1 / (2 x^0.9) 2^(-2.6) / 0.2 lies below 2^-26.
     ASSERT_EQ(look.unresolved.size(), 1u);
     EXPECT_NEAR(look.unresolved[0], 0.82, 0.1);

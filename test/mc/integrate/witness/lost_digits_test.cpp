@@ -46,6 +46,8 @@ TEST(LostDigits, OscillationsAndJumpsAreNoNoise) {
         EXPECT_EQ(from([](double r) { return std::abs(std::log(r)) / r; }), infinity);
         EXPECT_EQ(from([](double r) { return (2 + std::cos(20 * std::log(r))) / r; }), infinity);
         EXPECT_EQ(from([](double r) { return std::floor(1 / r); }), infinity);
+        EXPECT_EQ(from([](double r) { return r > 1e-6 ? 1 / r : 0; }), infinity);
+        EXPECT_EQ(from([](double r) { return std::exp(-1e-6 / r) / r; }), infinity);
         for (double frequency : {1e-6, 1e-3, 1.0, 1e3, 1e6})
             for (double power : {0.5, 1.0, 2.0, 4.0}) {
                 const auto phase = [=](double r) { return frequency * std::pow(r, -power); };
