@@ -95,13 +95,13 @@ void Evaluator::complete(ValueBatch g, const double* volume, const std::function
     if (finite && noise_.empty() && !(largest_ && largest_->learns(g))) return;
     PointBuffer u(g.count(), domain_.uniforms());
     points(u);
-    silence(u, g);
     if (!finite) {
         PointBuffer x(g.count(), domain_.dimensions());
         std::vector<double> ignored(g.count(), 1.0);
         domain_.map(u, x, ignored);
         screen(x, g, non_finite);
     }
+    silence(u, g);
     if (largest_) largest_->add(u, g);
 }
 
@@ -114,8 +114,8 @@ void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& no
                            std::vector<std::size_t>* where) const {
     if (domain_.is_unit_cube()) {
         integrand_(u, g);
-        silence(u, g);
         screen(u, g, non_finite, where);
+        silence(u, g);
         if (largest_) largest_->add(u, g);
         return;
     }
@@ -129,8 +129,8 @@ void Evaluator::operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& no
     domain_.map(u, x, volume);
     integrand_(x, g);
     scale(g, volume.data());
-    silence(u, g);
     screen(x, g, non_finite, where);
+    silence(u, g);
     if (largest_) largest_->add(u, g);
     x_buffer = std::move(x);
     volume_buffer = std::move(volume);

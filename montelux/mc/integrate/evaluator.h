@@ -70,6 +70,7 @@ class Evaluator {
   private:
     // Multiplies by the change of volume: the constant one, or else `volume` of each point.
     void scale(ValueBatch g, const double* volume) const;
+    // Sets values in the boxes of noise to zero.
     void silence(const PointBatch& u, ValueBatch g) const;
     void screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite,
                 std::vector<std::size_t>* where = nullptr) const;

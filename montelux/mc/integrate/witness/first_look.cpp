@@ -101,7 +101,7 @@ class Look {
                 look_.noise.push_back({static_cast<int>(c), lower, upper});
             }
             if (noise == infinity) continue;
-            // What noise shows is no evidence.
+            // Noise is no evidence.
             paths[p].precise_to = precise * noise;
             std::vector<Point> precise_points;
             std::vector<double> their_volumes;

@@ -17,8 +17,8 @@ LastValue last_value(const ShellValues& values, double from, double to, double f
 // 64 times the distance, where an oscillation is smooth, and smooth farther out. Infinite if there is none up to `finest`.
 double noise_from(const ShellValues& values, double finest);
 
-// That exponent, or `last`, the exponent of the last value, if cancellation rounds a term to zero beyond it. Infinite where
-// values have their digits, or end in truth.
+// Exponent from which on values have lost their digits: `last`, that of the last value, if cancellation rounds a term to zero
+// beyond it, else that of noise. Infinite where values have their digits, or end in truth.
 double digits_lost_from(const ShellValues& values, double last);
 
 // Exponent beyond that of cancellations, where powers are still doubles.
@@ -30,8 +30,8 @@ inline constexpr double precise = 0.8;
 // power that they followed before. Infinite where the masses do not fall.
 double mass_beyond(const ShellValues& values, double last, int codimension);
 
-// That mass where values that grow from one exponent end before another one, or drop to those of another term, by rounding to
-// zero; 0 where they do not.
+// Mass beyond the place between two exponents where values that grow from the first one end, or drop to those of another
+// term, by rounding to zero; 0 if there is none.
 double mass_of_lost_digits(const ShellValues& values, double from, double to, int codimension);
 
 } // namespace montelux

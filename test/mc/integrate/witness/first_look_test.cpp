@@ -207,7 +207,7 @@ TEST(FirstLook, NoiseIsNoEvidence) {
     EXPECT_EQ(look.noise[0].component, 0);
     EXPECT_EQ(look.noise[0].lower, std::vector<double>{0});
     EXPECT_NEAR(std::log2(look.noise[0].upper[0]), -26, 2);
-    // Of 1 / (2 x^0.9) 2^(-2.6) / 0.2 lies below 2^-26.
+    // The integral of 1 / (2 x^0.9) up to 2^-26 is 2^(-2.6) / 0.2.
     ASSERT_EQ(look.unresolved.size(), 1u);
     EXPECT_NEAR(look.unresolved[0], 0.82, 0.1);
     EXPECT_EQ(
@@ -224,7 +224,7 @@ TEST(FirstLook, NoiseIsNoEvidence) {
     }
 }
 
-// What is rounded to zero hides behind another term, on faces and edges, and in planes inside.
+// Numerators that are rounded to zero hide behind another term, on faces and edges, and in planes inside.
 TEST(FirstLook, DigitsAreLostBesideOtherTermsAndOnFaces) {
     const Domain unit = Domain::interval(0, 1);
     const auto cosine = [](double r, double power) { return (1 - std::cos(r)) / std::pow(r, power); };
@@ -237,7 +237,7 @@ TEST(FirstLook, DigitsAreLostBesideOtherTermsAndOnFaces) {
                 << constant << " " << slope;
             EXPECT_FALSE(diverges([=](double x) { return cosine(x, 2.8); })) << constant << " " << slope;
         }
-    // 2^(-26.5 * 0.2) / 0.4 of it lies below 2^-26.5.
+    // The part below 2^-26.5 is 2^(-26.5 * 0.2) / 0.4.
     const FirstLook line = look_at([=](double x) { return cosine(x, 2.8) + 1; }, unit);
     ASSERT_EQ(line.unresolved.size(), 1u);
     EXPECT_NEAR(line.unresolved[0], 0.063, 0.01);
@@ -257,7 +257,7 @@ TEST(FirstLook, DigitsAreLostBesideOtherTermsAndOnFaces) {
     EXPECT_EQ(look_at(converges, Domain::unit_cube(3)).divergence, "");
 }
 
-// Where a difference has long been rounded to zero, or to noise, overflow of its terms is no divergence.
+// Overflow of terms whose difference has long been rounded to zero, or to noise, is no divergence.
 TEST(FirstLook, OverflowAfterTheDigitsAreLostIsNoDivergence) {
     const Domain half_line = Domain::interval(0, infinity);
     const auto diverges = [&](auto f) { return look_at(f, half_line).divergence == "x -> inf"; };
@@ -268,7 +268,7 @@ TEST(FirstLook, OverflowAfterTheDigitsAreLostIsNoDivergence) {
     EXPECT_TRUE(diverges([](double x) { return std::log(1 + std::exp(x)); }));
 }
 
-// Towards the centre of a ball doubles are dense.
+// Doubles are dense towards the centre of a ball.
 TEST(FirstLook, PowersNearTheLimitConvergeAtTheCentreOfABall) {
     const Domain ball = Domain::ball({0, 0, 0});
     const auto power = [](double p) {
