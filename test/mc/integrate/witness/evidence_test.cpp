@@ -94,6 +94,21 @@ TEST(PoleSearch, EstimatesWhatDoublesDoNotResolve) {
     EXPECT_EQ(pole_of([](double x) { return std::exp(-x); }, 1, {0.4}).unresolved, 0);
 }
 
+TEST(Evidence, NoiseCountsAsZeroAndValuesThatAreNotFiniteCount) {
+    Evaluator evaluator(Integrand([](double x) { return x < 0.25 ? std::nan("") : 1; }),
+                        Domain::unit_cube(1));
+    evaluator.leave_out({{0, {0}, {0.5}}});
+    PointBuffer u(3, 1);
+    for (std::size_t i = 0; i < 3; ++i) u(i, 0) = 0.1 + 0.3 * static_cast<double>(i);
+    ValueBuffer g(3, 1);
+    NonFiniteCount non_finite;
+    evaluator(u, g, non_finite);
+    EXPECT_EQ(g(0, 0), 0);
+    EXPECT_EQ(g(1, 0), 0);
+    EXPECT_EQ(g(2, 0), 1);
+    EXPECT_EQ(non_finite.count, 1u);
+}
+
 TEST(Evidence, WithdrawsClaimsThatMissAPeak) {
     // Half of the integral within 1e-6 of zero, which uniform points do not hit.
     const auto f = [](std::span<const double> x) {
