@@ -42,12 +42,14 @@ test: dependencies ## fast tests, those where memory can go wrong also under the
 	cmake --build build/test --parallel $(JOBS)
 	cmake/run-tests.sh fast $(JOBS) build/test
 
-test-all: dependencies ## every test, the slow ones too, with each file compiled alone; then the whole house under the sanitizers (hours)
-	cmake --preset test-all
-	cmake --build build/test-all --parallel $(JOBS)
+test-all: dependencies ## each file compiled alone; every test, the slow ones too; then the whole house under the sanitizers (hours)
+	cmake --preset lint
+	cmake/check_includes.py build/lint/compile_commands.json $(JOBS)
+	cmake --preset test
+	cmake --build build/test --parallel $(JOBS)
 	cmake --preset asan
 	cmake --build build/asan --parallel $(JOBS)
-	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test-all build/asan
+	cmake/run-tests.sh 'fast|slow' $(JOBS) build/test build/asan
 
 PEERS := build/test-peers
 PEER_SCENES ?= ../shared/scenes/mitsuba/docs/scenes

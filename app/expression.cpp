@@ -4,6 +4,7 @@
 #include "app/usage_error.h"
 #include <algorithm>
 #include <array>
+#include <cfenv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -11,6 +12,7 @@
 #include <mutex>
 #include <numbers>
 #include <string_view>
+#include <type_traits>
 #include <utility>
 
 #include "montelux/mc/math/nearest_name.h"
@@ -24,31 +26,94 @@ constexpr std::array<std::pair<const char*, double>, 4> mathematical_constants{
      {"inf", std::numeric_limits<double>::infinity()},
      {"nan", std::numeric_limits<double>::quiet_NaN()}}};
 
-// What muParser does not bring itself.
+// Functions that muParser does not bring itself, and those that round: its hyperbolic inverses cancel digits. sqrt rounds as
+// operators do.
 template <typename Define>
 void define_functions(const Define& define) {
+    define("sin", [](double x) { return std::sin(x); });
+    define("cos", [](double x) { return std::cos(x); });
+    define("tan", [](double x) { return std::tan(x); });
+    define("asin", [](double x) { return std::asin(x); });
+    define("acos", [](double x) { return std::acos(x); });
+    define("atan", [](double x) { return std::atan(x); });
+    define("atan2", [](double y, double x) { return std::atan2(y, x); });
+    define("sinh", [](double x) { return std::sinh(x); });
+    define("cosh", [](double x) { return std::cosh(x); });
+    define("tanh", [](double x) { return std::tanh(x); });
+    define("asinh", [](double x) { return std::asinh(x); });
+    define("acosh", [](double x) { return std::acosh(x); });
+    define("atanh", [](double x) { return std::atanh(x); });
+    define("exp", [](double x) { return std::exp(x); });
+    define("expm1", [](double x) { return std::expm1(x); });
+    define("log", [](double x) { return std::log(x); });
+    define("ln", [](double x) { return std::log(x); });
+    define("log2", [](double x) { return std::log2(x); });
+    define("log10", [](double x) { return std::log10(x); });
+    define("log1p", [](double x) { return std::log1p(x); });
+    define("cbrt", [](double x) { return std::cbrt(x); });
+    define("pow", [](double x, double y) { return std::pow(x, y); });
+    define("hypot", [](double x, double y) { return std::hypot(x, y); });
     define("erf", [](double x) { return std::erf(x); });
     define("erfc", [](double x) { return std::erfc(x); });
     define("gamma", [](double x) { return std::tgamma(x); });
     define("lgamma", [](double x) { return std::lgamma(x); });
-    define("expm1", [](double x) { return std::expm1(x); });
-    define("log1p", [](double x) { return std::log1p(x); });
-    define("cbrt", [](double x) { return std::cbrt(x); });
+}
+
+// Functions that round nothing, or by operators alone.
+template <typename Define>
+void define_exact_functions(const Define& define) {
     define("floor", [](double x) { return std::floor(x); });
     define("ceil", [](double x) { return std::ceil(x); });
-    define("pow", [](double x, double y) { return std::pow(x, y); });
-    define("hypot", [](double x, double y) { return std::hypot(x, y); });
     define("mod", [](double x, double y) { return x - y * std::floor(x / y); });
 }
 
+// The mode in which a thread rounds, for a scope.
+class RoundingMode {
+  public:
+    explicit RoundingMode(int mode) : before_(std::fegetround()) { std::fesetround(mode); }
+    ~RoundingMode() { std::fesetround(before_); }
+    RoundingMode(const RoundingMode&) = delete;
+    RoundingMode& operator=(const RoundingMode&) = delete;
+
+  private:
+    int before_;
+};
+
+// The function, whose last digit follows the thread's mode: libraries round many values to the nearest one in any mode.
+template <typename F, typename... X>
+double rounded(X... x) {
+    constexpr double up = std::numeric_limits<double>::infinity();
+    const int mode = std::fegetround();
+    double y = 0;
+    {
+        const RoundingMode nearest(FE_TONEAREST);
+        y = F{}(x...);
+    }
+    return mode == FE_TONEAREST ? y : std::nextafter(y, mode == FE_UPWARD ? up : -up);
+}
+
+enum class Rounding { nearest, by_mode };
+
 // A parser with the functions, the given constants, and those others whose names the user does not want for variables.
-mu::Parser make_parser(const std::vector<std::string>& variables, const NamedConstants& given = {}) {
+mu::Parser make_parser(const std::vector<std::string>& variables, const NamedConstants& given = {},
+                       Rounding rounding = Rounding::nearest) {
     mu::Parser parser;
     parser.ClearConst();
     // Of all parsers, and not guarded: threads make parsers at the same time.
     static const bool once = (parser.ResetLocale(), true);
     static_cast<void>(once);
-    define_functions([&](const char* name, auto function) { parser.DefineFun(name, +function); });
+    const auto define = [&](const char* name, auto function) { parser.DefineFun(name, +function); };
+    const auto define_rounded = [&]<typename F>(const char* name, F) {
+        if constexpr (std::is_invocable_v<F, double>)
+            parser.DefineFun(name, &rounded<F, double>);
+        else
+            parser.DefineFun(name, &rounded<F, double, double>);
+    };
+    define_exact_functions(define);
+    if (rounding == Rounding::nearest)
+        define_functions(define);
+    else
+        define_functions(define_rounded);
     for (const auto& [name, value] : mathematical_constants)
         if (std::find(variables.begin(), variables.end(), name) == variables.end())
             parser.DefineConst(name, value);
@@ -174,6 +239,7 @@ struct Formulas::Pool {
     std::vector<std::string> texts, variables;
     NamedConstants given;
     std::string option;
+    Rounding rounding = Rounding::nearest;
     std::mutex mutex;
     std::vector<std::unique_ptr<Lease>> free;
 
@@ -181,7 +247,7 @@ struct Formulas::Pool {
         auto lease = std::make_unique<Lease>();
         lease->values.resize(variables.size());
         for (const std::string& text : texts) {
-            mu::Parser parser = make_parser(variables, given);
+            mu::Parser parser = make_parser(variables, given, rounding);
             try {
                 for (std::size_t d = 0; d < variables.size(); ++d)
                     parser.DefineVar(variables[d], &lease->values[d]);
@@ -245,6 +311,31 @@ std::vector<Integrand::BatchFunction> Formulas::guides() const {
             continue;
         }
     return all;
+}
+
+Integrand::BatchFunction Formulas::rounding(bool logarithms) const {
+    auto pool = std::make_shared<Pool>();
+    pool->texts = pool_->texts;
+    pool->variables = pool_->variables;
+    pool->given = pool_->given;
+    pool->rounding = Rounding::by_mode;
+    return [pool, logarithms](const PointBatch& x, ValueBatch y) {
+        auto lease = pool->take();
+        const auto evaluate = [](mu::Parser& parser, int mode) {
+            const RoundingMode rounding(mode);
+            return parser.Eval();
+        };
+        for (std::size_t i = 0; i < x.count(); ++i) {
+            x.gather(i, lease->values.data());
+            for (std::size_t c = 0; c < lease->parsers.size(); ++c) {
+                const double up = evaluate(lease->parsers[c], FE_UPWARD),
+                             down = evaluate(lease->parsers[c], FE_DOWNWARD);
+                y(i, static_cast<int>(c)) =
+                    up == down ? 0 : std::abs((up - down) / (logarithms ? 2 : up + down));
+            }
+        }
+        pool->give_back(std::move(lease));
+    };
 }
 
 void Formulas::operator()(const PointBatch& x, ValueBatch y) const {

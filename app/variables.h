@@ -41,15 +41,18 @@ struct NamedIntegrand {
     std::vector<std::string> names;
     std::shared_ptr<const DeviceFunction> compiled = nullptr; // on a device; null: there is none
     std::vector<std::vector<double>> landmarks = {};          // of the formulas (formula_landmarks),
-    std::vector<Integrand::BatchFunction> guides = {};        // (formula_guides)
+    std::vector<Integrand::BatchFunction> guides = {};        // (formula_guides),
+    Integrand::BatchFunction rounding = {};                   // (Formulas::rounding)
 
     int count() const { return static_cast<int>(names.size()); }
     // An integrand with another function, such as this one's on several machines.
     Integrand integrand(Integrand::BatchFunction f) const {
         return hinted(Integrand::batch(std::move(f), count()));
     }
-    // With the landmarks and guides.
-    Integrand hinted(const Integrand& f) const { return f.with_landmarks(landmarks).with_guides(guides); }
+    // With the landmarks, the guides and the rounding.
+    Integrand hinted(const Integrand& f) const {
+        return f.with_landmarks(landmarks).with_guides(guides).with_rounding(rounding);
+    }
 };
 
 // Throws Error where a density is zero and the integrand is not, since the integral would then be silently

@@ -159,12 +159,14 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
     Formulas parsed(formulas, variables, "", constants);
     std::vector<std::vector<double>> landmarks = parsed.landmarks();
     std::vector<Integrand::BatchFunction> guides = parsed.guides();
+    Integrand::BatchFunction rounding = parsed.rounding(o.log);
     NamedIntegrand made =
         o.device.empty()
             ? NamedIntegrand{std::move(parsed), formulas}
             : on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
     made.landmarks = std::move(landmarks);
     made.guides = std::move(guides);
+    made.rounding = std::move(rounding);
     return made;
 }
 

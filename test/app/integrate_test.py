@@ -38,6 +38,7 @@ VALUES = [
     # Without a target, auto keeps the samples taken so far.
     (1, 1e-6, "exp(-x) --over x=0:inf --evaluations 1e5"),
     (0.25, 1e-6, "x*y --over x,y=0:1 --evaluations 1e5"),
+    (-206.7736, 0.002, "asinh(x)/1e9 --over x=-1e10:-1e9 --relative-error 1e-6"),
     # Poles that cancel or are integrable.
     (1.892166140734366, 1e-9, "sin(x)/x --over x=-1:1 --absolute-error 1e-9"),
     (4, 1e-5, "1/sqrt(abs(x)) --over x=-1:1 --absolute-error 1e-6"),
@@ -78,6 +79,7 @@ OUTCOMES = [
     (0, "log Z = -4999.08106", "--log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6"),
     (3, "stopped at the number of evaluations",
      "--log -5000-x^2/2 --over x=-inf:inf --relative-error 1e-6 --method basic --evaluations 10k"),
+    (3, "digits that the integrand loses", "--log log(sqrt(1e16+x)-1e8) --over x=0:10 --relative-error 1e-3"),
     (0, "log Z = -inf", "--log log(0*x) --over x=0:1 --method basic --evaluations 1000"),
 ]  # fmt: skip
 # (logarithm, formula and options)
@@ -89,6 +91,24 @@ LOGARITHMS = [
     (-8001.609437912434, "-8000-5*x --over x=0:inf --density x=exp(-5*x) --method basic --relative-error 1e-3"),
     (-898.567588041694, "-900 --domain ball --over x,y,z --relative-error 1e-6"),
 ]
+LOST, BY_POLE = "digits that the integrand loses by cancellation", "closer to an end or a pole than doubles can tell"
+# Rounding errors: (exact value, warning, formula and options at 1e-3).
+CANCELLATIONS = [
+    (1.33333333, LOST, "(1-cos(1e-8*x))/1e-16 --over x=0:2"),
+    (50, LOST, "(sqrt(1e16+x)-1e8)*2e8 --over x=0:10"),
+    (0.25, LOST, "(x*y+1e15)-1e15 --over x,y=0:1"),
+    (1.71828183, LOST, "(1+x/1e15)^1e15 --over x=0:1"),
+    (41.06024, LOST, "log(1+1/x) --over x=1:1e18"),
+    (10.341142, LOST, "(1-cos(x))/x^3 --over x=1e-9:1"),
+    (5e-8, LOST, "(1-cos(x))/x^2 --over x=0:1e-7"),
+    (2.660806, BY_POLE, "(exp(x)-1-x)/x^2.8 --over x=0:1"),
+    (7.809502, LOST, "(1-cos(x*y*z))/(x*y*z)^2.6 --over x,y,z=0:1 --evaluations 1e5"),
+]
+# Functions that round: what they lose in sums of nearly equal values is known.
+ROUNDED = ["acos(x)", "asin(x)", "asinh(x)", "atan(x)", "atan2(x,2)", "atanh(x)", "cbrt(x)", "cos(x)", "cosh(x)", "erf(x)",
+           "erfc(x)", "exp(x)", "expm1(x)", "gamma(x)", "hypot(x,2)", "lgamma(x)", "ln(x)", "log(x)", "log10(x)", "log1p(x)",
+           "log2(x)", "pow(x,1.3)", "sin(x)", "sinh(x)", "sqrt(x)", "tan(x)", "tanh(x)", "acosh(x+1)"]  # fmt: skip
+EXACT = ["abs(x)", "ceil(x)", "floor(x)", "max(x,0)", "min(x,1)", "sign(x)", "rint(x)", "avg(x,x)", "mod(x,1)"]
 MISTAKES = [
     (2, "expected a FORMULA, --library or --source", ""),
     (2, "--log: 2 formulas were given; expected one", "--log x 1 --over x=0:1"),
@@ -178,6 +198,26 @@ class Results(ProgramTest):
             with self.subTest(line):
                 result = self.json(f"integrate --quiet {line}")
                 self.assert_near(first(result["value"]), exact, tolerance)
+
+    def test_cancellation_is_in_the_error(self):
+        for exact, warning, line in CANCELLATIONS:
+            with self.subTest(line):
+                result = json.loads(self.expect(3, warning, f"integrate --json --relative-error 1e-3 {line}", apart=True))
+                self.assert_near(first(result["value"]), exact, 3 * first(result["standard_error"]))
+                self.assertLess(first(result["standard_error"]), 1.1 * exact)
+
+    def test_rounding_of_every_function_is_known(self):
+        for f in ROUNDED:
+            with self.subTest(f):
+                at_half = re.sub(r"\bx\b", "0.5", f)
+                self.expect(3, LOST, f"integrate --relative-error 1e-3 {f}-{at_half} --over x=0.5:0.5+1e-15")
+        for f in EXACT:
+            with self.subTest(f):
+                result = self.json(f"integrate --relative-error 1e-3 {f}+0.1 --over x=0.4:0.9")
+                self.assertEqual([], [w for w in result["warnings"] if LOST in w])
+        known = re.search("expected one of (.*)", self.expect(2, "", "integrate none(x) --over x=0:1"))[1]
+        tested = {f.split("(")[0] for f in ROUNDED + EXACT} | {"sum"}
+        self.assertEqual(sorted(tested), sorted(known.split(", ")))
 
     def test_outcomes(self):
         self.expect_each(OUTCOMES, "integrate ")

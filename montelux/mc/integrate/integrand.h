@@ -89,6 +89,7 @@ class Integrand {
         other.dimensions_ = dimensions_;
         other.landmarks_ = landmarks_;
         other.guides_ = guides_;
+        other.rounding_ = rounding_;
         return other;
     }
     // Returns this integrand with landmarks: points near which it may have features, such as the numbers of a formula. Each
@@ -107,6 +108,15 @@ class Integrand {
         return other;
     }
     std::span<const BatchFunction> guides() const { return guides_; }
+    // Returns this integrand with its relative rounding errors: a function that fills in one for each component, 0 where
+    // it is exact, 1 and more where no digit is correct. What cancellation loses of the integral becomes part of its error.
+    Integrand with_rounding(BatchFunction relative) const {
+        Integrand other = *this;
+        other.rounding_ = std::move(relative);
+        return other;
+    }
+    // Empty where rounding errors are not known.
+    const BatchFunction& rounding() const { return rounding_; }
     const OnDevice& on_device() const { return on_device_; }
     // The same integrand, evaluated in this way on a device.
     Integrand with_device(OnDevice device) const {
@@ -134,6 +144,7 @@ class Integrand {
     OnDevice on_device_{};
     std::vector<std::vector<double>> landmarks_;
     std::vector<BatchFunction> guides_;
+    BatchFunction rounding_;
     int dimensions_ = 0;
     int components_;
 };

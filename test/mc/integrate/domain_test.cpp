@@ -7,14 +7,13 @@
 
 #include "montelux/mc/integrate/basic_monte_carlo.h"
 #include "montelux/mc/integrate/domain.h"
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/integrate.h"
 #include "montelux/mc/integrate/unit_points.h"
 #include "montelux/mc/math/constants.h"
 
 namespace montelux {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 using Point = std::span<const double>;
 struct Moment {

@@ -60,14 +60,18 @@ TEST(IntegrateCheckpoint, ResumedRunHasTheBitsOfAnUninterruptedOne) {
         EXPECT_TRUE(same_but_for_time(end, uninterrupted));
     }
 }
-// Values that are noise near zero are left out in the rest of the run, too.
+// Values that are noise near zero are left out in the rest of the run, too, and a fifth is imprecise there.
 TEST(IntegrateCheckpoint, NoiseIsLeftOutAfterAResumption) {
-    const Integrand f = [](double x) { return (std::exp(x) - 1 - x) / std::pow(x, 2.8); };
+    const Integrand f = Integrand([](double x) {
+                            return (std::exp(x) - 1 - x) / std::pow(x, 2.8);
+                        }).with_rounding([](const PointBatch& x, ValueBatch y) {
+        for (std::size_t i = 0; i < x.count(); ++i) y(i, 0) = x(i, 0) < 1e-4 ? 1 : 0;
+    });
     const Domain unit = Domain::interval(0, 1);
     const Budget budget{.evaluations = 200'000};
     const IntegrationResult uninterrupted = integrate(f, unit, Method::named("vegas"), budget, {.seed = 3});
     EXPECT_LT(std::abs(uninterrupted.value[0] - 2.660806), 4 * uninterrupted.standard_error[0]);
-    EXPECT_LT(uninterrupted.standard_error[0], 0.2);
+    EXPECT_NEAR(uninterrupted.standard_error[0], 0.33, 0.05); // 2.5 1e-4^0.2 - 2.5 1e-8^0.2
     const CheckpointFile file;
     CancelFlag cancel;
     IntegrationOptions options{.seed = 3, .cancel = &cancel, .checkpoint = file.path()};

@@ -8,6 +8,7 @@
 
 #include "montelux/mc/integrate/sampling.h"
 #include "montelux/mc/integrate/trained/unit_density.h"
+#include "montelux/mc/integrate/witness/imprecise_mass.h"
 #include "montelux/mc/integrate/witness/pole_search.h"
 #include "montelux/mc/integrate/witness/ridge.h"
 
@@ -74,6 +75,11 @@ void Evidence::look(const Integrand& f, std::uint64_t most_evaluations) {
     std::ranges::fill(examined_, Examined());
 }
 
+void Evidence::weigh_rounding(const Integrand& f) {
+    imprecise_ = imprecise_mass(evaluator_, f.landmarks(), seed_);
+    largest_.clear();
+}
+
 void Evidence::rescale(std::span<const double> exponents) {
     const auto rescaled = [&](double x, std::size_t c) {
         return std::ldexp(x, static_cast<int>(exponents[c]));
@@ -89,6 +95,7 @@ void Evidence::rescale(std::span<const double> exponents) {
         examined_[c].size = rescaled(examined_[c].size, c);
         examined_[c].unresolved = rescaled(examined_[c].unresolved, c);
         if (c < look_.unresolved.size()) look_.unresolved[c] = rescaled(look_.unresolved[c], c);
+        if (c < imprecise_.size()) imprecise_[c] = rescaled(imprecise_[c], c);
     }
     largest_.clear();
 }
@@ -184,15 +191,17 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
             least[c] = std::max(least[c], worst);
         }
         const double at_ends = c < look_.unresolved.size() ? look_.unresolved[c] : 0;
-        const double unresolved = std::max(examined_[c].unresolved, at_ends);
+        const double imprecise = c < imprecise_.size() ? imprecise_[c] : 0;
+        const double unresolved = std::max({examined_[c].unresolved, at_ends, imprecise});
         if (unresolved > tolerance) {
-            const std::string pole =
-                unresolved == at_ends
-                    ? "an end or a pole"
-                    : "the peak or pole at " + place_text(evaluator_.domain(), examined_[c].u).substr(5);
-            std::snprintf(text.data(), text.size(),
-                          "about %.2g of the integral lies closer to %s than doubles can tell", unresolved,
-                          pole.c_str());
+            const std::string what =
+                unresolved == at_ends     ? "lies closer to an end or a pole than doubles can tell"
+                : unresolved == imprecise ? "depends on digits that the integrand loses by cancellation"
+                                          : "lies closer to the peak or pole at " +
+                                                place_text(evaluator_.domain(), examined_[c].u).substr(5) +
+                                                " than doubles can tell";
+            std::snprintf(text.data(), text.size(), "about %.2g of the integral %s", unresolved,
+                          what.c_str());
             tally.warnings.emplace_back(text.data());
         }
         if (unresolved > tally.standard_error[c]) least[c] += unresolved;
@@ -220,6 +229,7 @@ void Evidence::save(StateWriter& state) const {
     state.put(look_.found_by_chance);
     state.put(look_.evaluations);
     state.put(look_.unresolved);
+    state.put(imprecise_);
     for (const Examined& e : examined_) {
         state.put(e.u);
         state.put(e.size);
@@ -240,6 +250,7 @@ void Evidence::load(StateReader& state) {
     look_.found_by_chance = state.get<int>() != 0;
     look_.evaluations = state.get_word();
     look_.unresolved = state.get_doubles();
+    imprecise_ = state.get_doubles();
     for (Examined& e : examined_) {
         e.u = state.get_doubles();
         e.size = state.get_double();

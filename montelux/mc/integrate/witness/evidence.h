@@ -23,6 +23,8 @@ class Evidence {
     // Takes the first look by the landmarks and guides of f, with at most so many evaluations; forgets an earlier one,
     // whose evaluations still count.
     void look(const Integrand& f, std::uint64_t most_evaluations);
+    // Notes what of the integral lies where the values of f have lost their digits, if f knows its rounding.
+    void weigh_rounding(const Integrand& f);
     // Follows a change of the values' unit, by powers of two with these exponents, one per component. Largest values are
     // forgotten: an estimator that starts again meets them again.
     void rescale(std::span<const double> exponents);
@@ -38,7 +40,7 @@ class Evidence {
     // Where the integral does not exist, or converges too slowly to tell; empty if it seems to exist.
     const std::string& divergence() const { return divergence_; }
     // Raises errors to what points of `density` (null: uniform points) are expected to miss of known peaks, and by what
-    // doubles do not resolve at poles; warns of what exceeds the target.
+    // doubles do not resolve at poles or lose by rounding; warns of what exceeds the target.
     void judge(const UnitDensity* density, const StepRequest& request, Tally& tally) const;
 
     void save(StateWriter& state) const;
@@ -57,6 +59,7 @@ class Evidence {
     LargestValues largest_;
     FirstLook look_;
     std::vector<Examined> examined_; // one per component
+    std::vector<double> imprecise_;  // mass of each component, or none
     std::string divergence_;
     std::uint64_t evaluations_ = 0;
 };

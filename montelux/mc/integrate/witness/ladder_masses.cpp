@@ -64,7 +64,7 @@ bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, dou
         return true;
     double mass = 0;
     if (noise < infinity) {
-        mass = mass_beyond(values_along(path, c), noise, path.codimension());
+        mass = mass_beyond(values_along(path, c), noise, path.codimension(), path.end());
         if (std::isinf(mass) && path.codimension() == 1) return true;
     } else if (const Drop drop = drop_by_rounding(path, rows, c); drop.mass > 0) {
         mass = drop.mass;
@@ -121,7 +121,7 @@ double LadderMasses::mass_of_rounding(const LadderPath& path, std::size_t c, std
     const double from = exponent_of(path, shell), to = shell + 1 < ladder.size()
                                                            ? exponent_of(path, shell + 1)
                                                            : std::min(beyond_digits, path.finest());
-    const double mass = mass_of_lost_digits(values_along(path, c), from, to, path.codimension());
+    const double mass = mass_of_lost_digits(values_along(path, c), from, to, path.codimension(), path.end());
     if (mass < infinity || path.codimension() == 1) return mass;
     LadderPath other = path; // a diagonal may be a ridge
     paths_.vary(other);
@@ -224,7 +224,7 @@ bool LadderMasses::diverge_along(LadderPath path, std::size_t c) {
         if (const double u = path.anchors[d].u; path.side[d] != 0 && u != 0 && u != 1)
             path.reach[d] = std::min({path.reach[d], u, 1 - u});
     if (path.finest() < least_resolved) return false;
-    return masses_diverge(values_along(path, c), path.finest(), path.codimension());
+    return masses_diverge(values_along(path, c), path.finest(), path.codimension(), false, path.end());
 }
 
 bool LadderMasses::diverge_at_infinity(const LadderPath& path, std::size_t c) {

@@ -41,6 +41,16 @@ double LadderPath::finest() const {
     return std::min(least, std::max(finest_inside, finest_at_origin / codimension()));
 }
 
+double LadderPath::end() const {
+    constexpr double near = 20; // exponent of a small distance
+    if (codimension() != 1) return infinity;
+    const auto d =
+        static_cast<std::size_t>(std::ranges::find_if(side, [](double s) { return s != 0; }) - side.begin());
+    const double distance = anchors[d].finest - finest_inside;
+    const bool at_end = anchors[d].u == 0 || anchors[d].u == 1;
+    return at_end && distance > near && anchors[d].finest < finest_at_origin ? distance : infinity;
+}
+
 double LadderPath::volume(double exponent, const std::vector<double>& across) const {
     double product = 1;
     for (std::size_t d = 0; d < side.size(); ++d)

@@ -32,6 +32,9 @@ struct LadderPath {
     // Shells at k have a volume of 2^(-k codimension).
     int codimension() const;
     double finest() const;
+    // Exponent of the distance from zero of the range's end, if that is small: what grows towards zero grows no more in shells
+    // beyond it. Infinite elsewhere.
+    double end() const;
     // Volume of the shell around the anchor; `across`: widths in the variables that do not move.
     double volume(double exponent, const std::vector<double>& across) const;
     std::vector<double> at(double exponent) const;
@@ -48,6 +51,8 @@ class LadderPaths {
     LadderPaths(const Domain& domain, std::size_t dimensions, std::span<const std::vector<double>> landmarks,
                 std::span<const std::vector<double>> places, std::uint64_t seed);
 
+    // Ends, centre and origin of a variable, and the landmarks' coordinates.
+    std::span<const Anchor> anchors(std::size_t d) const { return anchors_[d]; }
     // Both sides of each anchor of a variable, the others fixed; or of its ends alone.
     std::vector<LadderPath> along(std::size_t d, const std::vector<double>& through, bool ends = false) const;
     // All variables at once: each place, each corner of up to three variables, and some with an anchor of its own in each

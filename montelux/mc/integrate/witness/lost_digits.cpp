@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "montelux/mc/integrate/infinity.h"
@@ -112,20 +113,22 @@ double digits_lost_from(const ShellValues& values, double last) {
     return is_rounded_to_zero(values, last) ? last : noise_from(values, last);
 }
 
-double mass_beyond(const ShellValues& values, double last, int codimension) {
+double mass_beyond(const ShellValues& values, double last, int codimension, double until) {
     const double fall = fall_before(values, last, codimension);
-    if (fall < least_fall) return infinity;
+    if (until <= last) return 0;
+    if (until == infinity && fall < least_fall) return infinity;
     const std::array<double, 1> k{precise * last};
-    return codimension * values(k)[0] * std::exp2(-codimension * k[0] - fall * (last - k[0])) / fall;
+    const double sum = -std::expm1(-std::numbers::ln2 * fall * (until - last)) / fall;
+    return codimension * values(k)[0] * std::exp2(-codimension * k[0] - fall * (last - k[0])) * sum;
 }
 
-double mass_of_lost_digits(const ShellValues& values, double from, double to, int codimension) {
+double mass_of_lost_digits(const ShellValues& values, double from, double to, int codimension, double until) {
     const std::array<double, 1> k{from};
     constexpr int bisections = 7; // few, since most peaks drop smoothly
     const LastValue last = last_value(values, from, to, values(k)[0] / sudden, bisections);
     if (!std::isfinite(last.beyond) || !(last.value > sudden * last.beyond)) return 0;
     const double lost = digits_lost_from(values, last.exponent);
-    return lost < infinity ? mass_beyond(values, lost, codimension) : 0;
+    return lost < infinity ? mass_beyond(values, lost, codimension, until) : 0;
 }
 
 } // namespace montelux

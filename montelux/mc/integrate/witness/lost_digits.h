@@ -27,11 +27,12 @@ inline constexpr double beyond_digits = 120;
 inline constexpr double precise = 0.8;
 
 // Integral of |g| beyond the exponent where values have lost their digits, in units of the volume at exponent 0, by the
-// power that they followed before. Infinite where the masses do not fall.
-double mass_beyond(const ShellValues& values, double last, int codimension);
+// power that they followed before, up to the exponent `until`. Infinite where the masses do not fall and have no end.
+double mass_beyond(const ShellValues& values, double last, int codimension, double until = infinity);
 
 // Mass beyond the place between two exponents where values that grow from the first one end, or drop to those of another
-// term, by rounding to zero; 0 if there is none.
-double mass_of_lost_digits(const ShellValues& values, double from, double to, int codimension);
+// term, by rounding to zero, up to the exponent `until`; 0 if there is none.
+double mass_of_lost_digits(const ShellValues& values, double from, double to, int codimension,
+                           double until = infinity);
 
 } // namespace montelux

@@ -51,7 +51,8 @@ namespace {
 
 enum class Rounding { unlikely, likely, overflows };
 
-bool masses_diverge_until(const ShellValues& values, double finest, int codimension, Rounding rounding) {
+bool masses_diverge_until(const ShellValues& values, double finest, int codimension, Rounding rounding,
+                          double until) {
     if (finest < coarsest) return false;
     const std::vector<double> outer = exponents(outer_from * finest, outer_to * finest);
     const std::vector<double> inner = exponents(inner_from * finest, inner_to * finest);
@@ -75,9 +76,9 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
         if (rounding == Rounding::unlikely) return false;
         const auto [last, value, beyond] = last_value(values, 0, finest);
         if (beyond != 0 || (rounding == Rounding::overflows && last > of_digits))
-            return masses_diverge_until(values, last, codimension, Rounding::unlikely);
+            return masses_diverge_until(values, last, codimension, Rounding::unlikely, until);
         const double lost = digits_lost_from(values, last);
-        return lost < infinity && std::isinf(mass_beyond(values, lost, codimension));
+        return lost < infinity && std::isinf(mass_beyond(values, lost, codimension, until));
     }
     // Values that no longer grow are those of a narrow peak. Over three octaves those of a pole grow by 8^codimension or
     // more, but for oscillations.
@@ -95,12 +96,12 @@ bool masses_diverge_until(const ShellValues& values, double finest, int codimens
 
 } // namespace
 
-bool masses_diverge(const ShellValues& values, double finest, int codimension, bool overflows) {
-    if (!masses_diverge_until(values, finest, codimension,
-                              overflows ? Rounding::overflows : Rounding::likely))
+bool masses_diverge(const ShellValues& values, double finest, int codimension, bool overflows, double until) {
+    if (!masses_diverge_until(values, finest, codimension, overflows ? Rounding::overflows : Rounding::likely,
+                              until))
         return false;
     const double from = noise_from(values, finest);
-    return from == infinity || std::isinf(mass_beyond(values, from, codimension));
+    return from == infinity || std::isinf(mass_beyond(values, from, codimension, until));
 }
 
 } // namespace montelux

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/domain.h"
+#include "montelux/mc/integrate/infinity.h"
 
 namespace montelux {
 
@@ -30,7 +31,9 @@ using ShellValues = std::function<std::vector<double>(std::span<const double> ex
 // with that over shells of half their exponents, where 1 / k gives a ratio of a half. True where they do not fall.
 // Where inner values are infinite, zero or not numbers, by overflow or rounding, coarser shells decide. Values that end
 // in truth have no mass beyond; `overflows`: zeros beyond 2^-64 are not such ends, but quotients by an infinite number.
-// Where cancellation makes inner values noise, the power that they followed before decides.
-bool masses_diverge(const ShellValues& values, double finest, int codimension, bool overflows = false);
+// Where cancellation makes inner values noise or zero, the power that they followed before decides, up to the exponent
+// `until`.
+bool masses_diverge(const ShellValues& values, double finest, int codimension, bool overflows = false,
+                    double until = infinity);
 
 } // namespace montelux

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "montelux/mc/integrate/cubature/cubature.h"
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/trained/samples.h"
 #include "montelux/mc/integrate/trained/trained_density.h"
 #include "montelux/mc/integrate/unit_points.h"
@@ -14,8 +15,6 @@
 
 namespace montelux {
 namespace {
-
-constexpr double infinity = std::numeric_limits<double>::infinity();
 
 std::string error_of(const std::function<void()>& f) {
     try {

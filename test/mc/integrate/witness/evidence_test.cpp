@@ -169,6 +169,59 @@ TEST(Evidence, DigitsLostByCancellationAreInTheError) {
     }
 }
 
+// Ranges that end in the place where digits are lost: 10 of 10.4 by doubles, within 1e-8 and below nothing.
+TEST(Evidence, DigitsLostBeforeTheEndOfARangeAreNoDivergence) {
+    for (double from : {1e-9, 1e-10}) {
+        const IntegrationResult r =
+            integrate([](double x) { return (1 - std::cos(x)) / std::pow(x, 3); }, Domain::interval(from, 1),
+                      Method(), {.relative_error = 1e-2}, {.threads = 1});
+        // The integral of 1 / (2 x) and of the rest, -1/48 + 1/2880 - ...
+        const double exact = -std::log(from) / 2 - 0.0204908;
+        EXPECT_EQ(r.stop, StopReason::finished) << to_string(r);
+        EXPECT_LT(std::abs(r.value[0] - exact), 3 * r.standard_error[0]) << to_string(r);
+        EXPECT_LT(r.standard_error[0], 0.3 * exact);
+    }
+    EXPECT_EQ(integrate([](double x) { return 1 / (x - 1e-9); }, Domain::interval(1e-9, 1), Method(),
+                        {.relative_error = 1e-2})
+                  .stop,
+              StopReason::diverges);
+}
+
+// Two digits and half of the integral are lost.
+TEST(Evidence, KnownRoundingIsInTheErrorOfEveryMethod) {
+    const auto rounding = [](const PointBatch& x, ValueBatch y) {
+        for (std::size_t i = 0; i < x.count(); ++i) {
+            y(i, 0) = x(i, 0) < 0.5 ? 1 : 0;
+            y(i, 1) = 1e-15;
+        }
+    };
+    const Integrand f = Integrand::vector_valued(2, [](std::span<const double> x, std::span<double> y) {
+                            y[0] = 1e30 * x[0];
+                            y[1] = x[0];
+                        }).with_rounding(rounding);
+    for (const char* method : {"auto", "adaptive", "vegas", "quasi", "cubature", "basic"}) {
+        const Budget budget{.relative_error = 1e-2, .evaluations = 100'000};
+        const IntegrationResult r = integrate(f, Domain::unit_cube(1), Method::named(method), budget);
+        EXPECT_FALSE(r.converged()) << method;
+        EXPECT_NEAR(r.standard_error[0], 0.125e30, 0.02e30) << method;
+        EXPECT_LT(r.standard_error[1], 1e-2) << method;
+        EXPECT_NE(to_string(r).find("loses by cancellation"), std::string::npos) << method;
+        // One part in 1e-15 is no matter.
+        const auto precise = [](const PointBatch&, ValueBatch y) {
+            std::ranges::fill(y.component(0), 1e-15);
+            std::ranges::fill(y.component(1), 1e-15);
+        };
+        const IntegrationResult known =
+            integrate(f.with_rounding(precise), Domain::unit_cube(1), Method::named(method), budget);
+        const IntegrationResult unknown =
+            integrate(f.with_rounding(nullptr), Domain::unit_cube(1), Method::named(method), budget);
+        EXPECT_TRUE(known.converged()) << method;
+        EXPECT_EQ(known.value, unknown.value) << method;
+        EXPECT_EQ(known.standard_error, unknown.standard_error) << method;
+        EXPECT_EQ(known.evaluations, unknown.evaluations) << method;
+    }
+}
+
 // Cancellation of one digit an octave, at infinity and at a corner; masses that fall like 1 / k^2 to infinity.
 TEST(Evidence, WhatDoublesDoNotResolveIsInTheError) {
     struct Case {
