@@ -138,10 +138,12 @@ class Look {
         for (std::size_t d = 0; d < n_; ++d) {
             if (path.side[d] == 0) continue;
             slow.place[d] = path.anchors[d].u;
-            if (slow.place[d] != 0 && slow.place[d] != 1) return;
+            if (n_ > 1 && slow.place[d] != 0 && slow.place[d] != 1) return; // the search for poles looks inside
         }
         if (look_.slow.size() == SlowShells::most ||
-            std::ranges::find(look_.slow, slow.place, &SlowShells::place) != look_.slow.end())
+            std::ranges::any_of(look_.slow, [&](const SlowShells& other) {
+                return other.place == slow.place && is_same_side(path, other);
+            }))
             return;
         const double finest = std::min(path.finest(), ladder.back()) / ladder.back();
         for (std::size_t i = 0; i < ladder.size(); ++i) {
@@ -170,6 +172,13 @@ class Look {
             if (!any_slow(slow)) return;
         }
         look_.slow.push_back(std::move(slow));
+    }
+
+    // Whether the shells lie on the sides of their place to which a path leads.
+    static bool is_same_side(const LadderPath& path, const SlowShells& shells) {
+        for (std::size_t d = 0; d < path.side.size(); ++d)
+            if (path.side[d] * (shells.shells.front().u[d] - path.anchors[d].u) < 0) return false;
+        return true;
     }
 
     bool any_slow(const SlowShells& slow) const {
