@@ -1,21 +1,24 @@
 #include "app/expression.h"
 
 #include "app/formula_landmarks.h"
+#include "app/random_rounding.h"
 #include "app/usage_error.h"
 #include <algorithm>
 #include <array>
-#include <cfenv>
+#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
 #include <muParser.h>
 #include <mutex>
 #include <numbers>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 #include <utility>
 
 #include "montelux/mc/math/nearest_name.h"
+#include "montelux/mc/random/hash.h"
 
 namespace montelux::app {
 namespace {
@@ -26,8 +29,7 @@ constexpr std::array<std::pair<const char*, double>, 4> mathematical_constants{
      {"inf", std::numeric_limits<double>::infinity()},
      {"nan", std::numeric_limits<double>::quiet_NaN()}}};
 
-// Functions that muParser does not bring itself, and those that round: its hyperbolic inverses cancel digits. sqrt rounds as
-// operators do.
+// Functions that muParser does not bring itself, and those that round: its hyperbolic inverses cancel digits.
 template <typename Define>
 void define_functions(const Define& define) {
     define("sin", [](double x) { return std::sin(x); });
@@ -50,6 +52,7 @@ void define_functions(const Define& define) {
     define("log2", [](double x) { return std::log2(x); });
     define("log10", [](double x) { return std::log10(x); });
     define("log1p", [](double x) { return std::log1p(x); });
+    define("sqrt", [](double x) { return std::sqrt(x); });
     define("cbrt", [](double x) { return std::cbrt(x); });
     define("pow", [](double x, double y) { return std::pow(x, y); });
     define("hypot", [](double x, double y) { return std::hypot(x, y); });
@@ -67,32 +70,54 @@ void define_exact_functions(const Define& define) {
     define("mod", [](double x, double y) { return x - y * std::floor(x / y); });
 }
 
-// The mode in which a thread rounds, for a scope.
-class RoundingMode {
-  public:
-    explicit RoundingMode(int mode) : before_(std::fegetround()) { std::fesetround(mode); }
-    ~RoundingMode() { std::fesetround(before_); }
-    RoundingMode(const RoundingMode&) = delete;
-    RoundingMode& operator=(const RoundingMode&) = delete;
-
-  private:
-    int before_;
-};
-
-// The function, whose last digit follows the thread's mode: libraries round many values to the nearest one in any mode.
+// The function with a random rounding: libraries round many values to the nearest number in any mode. Whole numbers of whole
+// numbers are exact, but for those to which tanh and the like tend; zeros, which operations that round down make negative, are
+// positive.
 template <typename F, typename... X>
 double rounded(X... x) {
-    constexpr double up = std::numeric_limits<double>::infinity();
-    const int mode = std::fegetround();
     double y = 0;
+    bool exact = false;
     {
-        const RoundingMode nearest(FE_TONEAREST);
-        y = F{}(x...);
+        const NearestRounding nearest;
+        const auto is_whole = [](double v) { return v == std::rint(v) && std::abs(v) < 0x1p53; };
+        y = F{}((x == 0 ? 0.0 : x)...);
+        exact = (is_whole(x) && ...) && is_whole(y) && (std::abs(y) > 1 || ((std::abs(x) <= 2) && ...));
     }
-    return mode == FE_TONEAREST ? y : std::nextafter(y, mode == FE_UPWARD ? up : -up);
+    RandomRounding::turn();
+    return exact ? y : RandomRounding::moved(y);
 }
 
-enum class Rounding { nearest, by_mode };
+// A function in formulas whose roundings are random: chooses that of the operations after an operand.
+constexpr const char* turning = "_turn_";
+double turn(double x) {
+    RandomRounding::turn();
+    return x;
+}
+
+// The formula with each variable in a call of that function.
+std::string with_turns(const std::string& text, const std::vector<std::string>& variables) {
+    std::string all;
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t length = name_length(std::string_view(text).substr(i));
+        const std::string name = text.substr(i, length);
+        if (length == 0) { // a number, with its exponent, or a symbol
+            double number = 0;
+            const auto [stop, error] = std::from_chars(text.data() + i, text.data() + text.size(), number);
+            length = error == std::errc() && text[i] != '-'
+                         ? static_cast<std::size_t>(stop - (text.data() + i))
+                         : 1;
+            all += text.substr(i, length);
+        } else if (std::ranges::find(variables, name) != variables.end()) {
+            all += turning + ("(" + name + ")");
+        } else {
+            all += name;
+        }
+        i += length;
+    }
+    return all;
+}
+
+enum class Rounding { nearest, random, opposite };
 
 // A parser with the functions, the given constants, and those others whose names the user does not want for variables.
 mu::Parser make_parser(const std::vector<std::string>& variables, const NamedConstants& given = {},
@@ -110,10 +135,12 @@ mu::Parser make_parser(const std::vector<std::string>& variables, const NamedCon
             parser.DefineFun(name, &rounded<F, double, double>);
     };
     define_exact_functions(define);
-    if (rounding == Rounding::nearest)
+    if (rounding == Rounding::nearest) {
         define_functions(define);
-    else
+    } else {
         define_functions(define_rounded);
+        parser.DefineFun(turning, &turn);
+    }
     for (const auto& [name, value] : mathematical_constants)
         if (std::find(variables.begin(), variables.end(), name) == variables.end())
             parser.DefineConst(name, value);
@@ -248,10 +275,12 @@ struct Formulas::Pool {
         lease->values.resize(variables.size());
         for (const std::string& text : texts) {
             mu::Parser parser = make_parser(variables, given, rounding);
+            std::optional<RandomRounding> of_constants;
+            if (rounding != Rounding::nearest) of_constants.emplace(0, rounding == Rounding::opposite);
             try {
                 for (std::size_t d = 0; d < variables.size(); ++d)
                     parser.DefineVar(variables[d], &lease->values[d]);
-                parser.SetExpr(text);
+                parser.SetExpr(rounding == Rounding::nearest ? text : with_turns(text, variables));
                 parser.Eval();
             } catch (const mu::ParserError& error) {
                 explain(error, text, option, parser, variables);
@@ -313,28 +342,32 @@ std::vector<Integrand::BatchFunction> Formulas::guides() const {
     return all;
 }
 
-Integrand::BatchFunction Formulas::rounding(bool logarithms) const {
-    auto pool = std::make_shared<Pool>();
-    pool->texts = pool_->texts;
-    pool->variables = pool_->variables;
-    pool->given = pool_->given;
-    pool->rounding = Rounding::by_mode;
-    return [pool, logarithms](const PointBatch& x, ValueBatch y) {
-        auto lease = pool->take();
-        const auto evaluate = [](mu::Parser& parser, int mode) {
-            const RoundingMode rounding(mode);
-            return parser.Eval();
-        };
-        for (std::size_t i = 0; i < x.count(); ++i) {
-            x.gather(i, lease->values.data());
-            for (std::size_t c = 0; c < lease->parsers.size(); ++c) {
-                const double up = evaluate(lease->parsers[c], FE_UPWARD),
-                             down = evaluate(lease->parsers[c], FE_DOWNWARD);
-                y(i, static_cast<int>(c)) =
-                    up == down ? 0 : std::abs((up - down) / (logarithms ? 2 : up + down));
+Integrand::BatchFunction Formulas::rounding() const {
+    std::vector<std::shared_ptr<Pool>> pools;
+    for (const Rounding rounding : {Rounding::random, Rounding::opposite}) {
+        auto pool = std::make_shared<Pool>();
+        pool->texts = pool_->texts;
+        pool->variables = pool_->variables;
+        pool->given = pool_->given;
+        pool->rounding = rounding;
+        pools.push_back(std::move(pool));
+    }
+    return [pools](const PointBatch& x, ValueBatch y) {
+        for (std::size_t p = 0; p < pools.size(); ++p) {
+            auto lease = pools[p]->take();
+            for (std::size_t i = 0; i < x.count(); ++i) {
+                x.gather(i, lease->values.data());
+                for (double& coordinate : lease->values) {
+                    const RandomRounding rounding(hash_key(i, &coordinate - lease->values.data()), p == 1);
+                    coordinate = RandomRounding::moved(coordinate);
+                }
+                for (std::size_t c = 0; c < lease->parsers.size(); ++c) {
+                    const RandomRounding rounding(i, p == 1);
+                    y(i, static_cast<int>(2 * c + p)) = lease->parsers[c].Eval();
+                }
             }
+            pools[p]->give_back(std::move(lease));
         }
-        pool->give_back(std::move(lease));
     };
 }
 

@@ -31,10 +31,8 @@ class Formulas {
     std::vector<std::vector<double>> landmarks() const;
     // Functions that are zero near such points (formula_guides).
     std::vector<Integrand::BatchFunction> guides() const;
-    // Relative rounding errors (Integrand::with_rounding) of the values, or of those whose logarithms the formulas are: from
-    // half of the difference between values that are rounded up and down after each operation and function (Kahan 2006, How
-    // Futile are Mindless Assessments of Roundoff in Floating-Point Computation?).
-    Integrand::BatchFunction rounding(bool logarithms) const;
+    // Values with random roundings (Integrand::with_rounding), those of constants included.
+    Integrand::BatchFunction rounding() const;
     // Coordinate d of a point is the value of variable d.
     void operator()(const PointBatch& x, ValueBatch y) const;
     // The value of the first formula; one variable.

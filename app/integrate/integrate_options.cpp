@@ -159,7 +159,7 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
     Formulas parsed(formulas, variables, "", constants);
     std::vector<std::vector<double>> landmarks = parsed.landmarks();
     std::vector<Integrand::BatchFunction> guides = parsed.guides();
-    Integrand::BatchFunction rounding = parsed.rounding(o.log);
+    Integrand::BatchFunction rounding = parsed.rounding();
     NamedIntegrand made =
         o.device.empty()
             ? NamedIntegrand{std::move(parsed), formulas}

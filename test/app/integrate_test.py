@@ -102,12 +102,20 @@ CANCELLATIONS = [
     (10.341142, LOST, "(1-cos(x))/x^3 --over x=1e-9:1"),
     (5e-8, LOST, "(1-cos(x))/x^2 --over x=0:1e-7"),
     (2.660806, BY_POLE, "(exp(x)-1-x)/x^2.8 --over x=0:1"),
+    # Terms that round alike, zeros in a branch, constants, coordinates.
+    (1.33333333, LOST, "1+abs((1e15+x)-(1e15+y)) --over x,y=0:1"),
+    (1.5, LOST, "1e20*(exp(-1e-20*t)-exp(-2e-20*t))+1 --over t=0:1"),
+    (0.5625, LOST, "'v<1 ? (1/sqrt(1-(v/299792458)^2)-1)*299792458^2 : v^2/2' --over v=0:1.5"),
+    (99, LOST, "log(1+exp(-x))*exp(x) --over x=0:100"),
+    (1.5, LOST, "x+(1e16+1-1e16) --over x=0:1"),
+    (1, LOST, "exp(-(x-1e16)) --over x=1e16:inf"),
     (7.809502, LOST, "(1-cos(x*y*z))/(x*y*z)^2.6 --over x,y,z=0:1 --evaluations 1e5"),
 ]
 # Functions that round: what they lose in sums of nearly equal values is known.
 ROUNDED = ["acos(x)", "asin(x)", "asinh(x)", "atan(x)", "atan2(x,2)", "atanh(x)", "cbrt(x)", "cos(x)", "cosh(x)", "erf(x)",
            "erfc(x)", "exp(x)", "expm1(x)", "gamma(x)", "hypot(x,2)", "lgamma(x)", "ln(x)", "log(x)", "log10(x)", "log1p(x)",
            "log2(x)", "pow(x,1.3)", "sin(x)", "sinh(x)", "sqrt(x)", "tan(x)", "tanh(x)", "acosh(x+1)"]  # fmt: skip
+WHOLE = ["2^x", "atan2(floor(2*x)-1,x)", "floor(log2(floor(10*x)))", "floor(hypot(3*floor(10*x),4*floor(10*x)))"]
 EXACT = ["abs(x)", "ceil(x)", "floor(x)", "max(x,0)", "min(x,1)", "sign(x)", "rint(x)", "avg(x,x)", "mod(x,1)"]
 MISTAKES = [
     (2, "expected a FORMULA, --library or --source", ""),
@@ -204,14 +212,14 @@ class Results(ProgramTest):
             with self.subTest(line):
                 result = json.loads(self.expect(3, warning, f"integrate --json --relative-error 1e-3 {line}", apart=True))
                 self.assert_near(first(result["value"]), exact, 3 * first(result["standard_error"]))
-                self.assertLess(first(result["standard_error"]), 1.1 * exact)
+                self.assertLess(first(result["standard_error"]), 6 * exact)
 
     def test_rounding_of_every_function_is_known(self):
         for f in ROUNDED:
             with self.subTest(f):
                 at_half = re.sub(r"\bx\b", "0.5", f)
                 self.expect(3, LOST, f"integrate --relative-error 1e-3 {f}-{at_half} --over x=0.5:0.5+1e-15")
-        for f in EXACT:
+        for f in EXACT + WHOLE:
             with self.subTest(f):
                 result = self.json(f"integrate --relative-error 1e-3 {f}+0.1 --over x=0.4:0.9")
                 self.assertEqual([], [w for w in result["warnings"] if LOST in w])

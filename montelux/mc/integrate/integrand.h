@@ -108,11 +108,11 @@ class Integrand {
         return other;
     }
     std::span<const BatchFunction> guides() const { return guides_; }
-    // Returns this integrand with its relative rounding errors: a function that fills in one for each component, 0 where
-    // it is exact, 1 and more where no digit is correct. What cancellation loses of the integral becomes part of its error.
-    Integrand with_rounding(BatchFunction relative) const {
+    // Returns this integrand with a function that fills in two more values for each component, 2 c and 2 c + 1, rounded
+    // otherwise: by their difference from it a value is uncertain. What rounding loses of the integral becomes part of its error.
+    Integrand with_rounding(BatchFunction twice) const {
         Integrand other = *this;
-        other.rounding_ = std::move(relative);
+        other.rounding_ = std::move(twice);
         return other;
     }
     // Empty where rounding errors are not known.

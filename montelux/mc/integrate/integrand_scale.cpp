@@ -158,11 +158,19 @@ Integrand scaled(const Integrand& f, IntegrandScale& scale) {
     };
     OnDevice device = f.on_device();
     device.after.emplace_back(apply);
+    Integrand::BatchFunction rounding;
+    if (f.rounding())
+        rounding = [&scale, twice = f.rounding()](const PointBatch& x, ValueBatch y) {
+            twice(x, y);
+            for (int c = 0; c < y.components(); ++c)
+                scale.apply(static_cast<std::size_t>(c / 2), y.component(c));
+        };
     return f
         .with_function([f, apply](const PointBatch& x, ValueBatch y) {
             f(x, y);
             apply(y);
         })
+        .with_rounding(std::move(rounding))
         .with_device(std::move(device));
 }
 

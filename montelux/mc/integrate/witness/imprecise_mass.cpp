@@ -86,6 +86,35 @@ class Corners {
     int n_;
 };
 
+// Sums over points of one component.
+class Imprecise {
+  public:
+    // `error`: by rounding.
+    void add(double weight, double value, double error) {
+        const double size = std::abs(value);
+        all_ += weight * size;
+        if (!(error > 0) || std::isinf(error)) return;
+        if (size == 0) {
+            zero_volume_ += weight;
+            of_zeros_ += weight * error;
+        } else if (error > imprecise * size) {
+            volume_ += weight;
+            mass_ += weight * size;
+        } else {
+            of_digits_ += weight * error;
+        }
+    }
+    // Zeros by rounding hold no more than their errors, and about as much as other values that lost their digits, or as all:
+    // towards a pole errors grow without limit, and values do not.
+    double total() const {
+        const double size = volume_ > 0 ? mass_ / volume_ : all_ / static_cast<double>(points);
+        return of_digits_ + mass_ + (size > 0 ? std::min(of_zeros_, zero_volume_ * size) : of_zeros_);
+    }
+
+  private:
+    double all_ = 0, of_digits_ = 0, mass_ = 0, volume_ = 0, zero_volume_ = 0, of_zeros_ = 0;
+};
+
 } // namespace
 
 std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const std::vector<double>> landmarks,
@@ -99,9 +128,10 @@ std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const s
     for (int d = 0; d < n; ++d) scales.emplace_back(paths.anchors(static_cast<std::size_t>(d)));
     const Corners corners(n);
 
-    std::vector<double> mass(static_cast<std::size_t>(components), 0.0), weight(batch), volume(batch);
+    std::vector<Imprecise> masses(static_cast<std::size_t>(components));
+    std::vector<double> weight(batch), volume(batch);
     PointBuffer random(batch, 2 * n + 1), u(batch, n), x(batch, domain.dimensions());
-    ValueBuffer g(batch, components), relative(batch, components);
+    ValueBuffer g(batch, components), twice(batch, 2 * components);
     NonFiniteCount ignored;
     const ScrambledSobol sobol(2 * n + 1, hash_key(seed, stream), 0);
     for (std::size_t first = 0; first < points; first += batch) {
@@ -124,17 +154,20 @@ std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const s
         }
         std::ranges::fill(volume, 1.0);
         domain.map(u, x, volume);
-        evaluator(u, g, ignored);
-        rounding(x, relative);
+        std::vector<std::size_t> not_finite;
+        evaluator(u, g, ignored, &not_finite);
+        for (std::size_t i : not_finite) weight[i] = 0;
+        rounding(x, twice);
         for (int c = 0; c < components; ++c)
             for (std::size_t i = 0; i < batch; ++i) {
-                const double r = relative.view()(i, c);
-                if (r > 0)
-                    mass[static_cast<std::size_t>(c)] +=
-                        weight[i] * std::abs(g.view()(i, c)) * (r > imprecise ? 1 : r);
+                const double value = g.view()(i, c), first_error = volume[i] * twice.view()(i, 2 * c) - value,
+                             second_error = volume[i] * twice.view()(i, 2 * c + 1) - value;
+                masses[static_cast<std::size_t>(c)].add(
+                    weight[i], value, std::max(std::abs(first_error), std::abs(second_error)));
             }
     }
-    for (double& m : mass) m /= static_cast<double>(points);
+    std::vector<double> mass;
+    for (const Imprecise& m : masses) mass.push_back(m.total() / static_cast<double>(points));
     return mass;
 }
 

@@ -54,9 +54,20 @@ bool LadderMasses::see(const std::vector<double>& row, double volume) {
     return true;
 }
 
+LadderPath LadderMasses::another(LadderPath path) {
+    const std::vector<double> through = paths_.generic_point();
+    for (std::size_t d = 0; d < path.side.size(); ++d)
+        if (path.side[d] == 0) path.anchors[d].u = through[d];
+    paths_.vary(path);
+    return path;
+}
+
 double LadderMasses::noise(const LadderPath& path, Rows rows, std::size_t c) {
-    const bool grows = mass(path, rows, c, 0) > mass(path, rows, c, 1) && !is_negligible(path, rows, c);
-    return grows ? noise_from(values_along(path, c), path.finest()) : infinity;
+    if (!(mass(path, rows, c, 0) > mass(path, rows, c, 1)) || is_negligible(path, rows, c)) return infinity;
+    const double from = noise_from(values_along(path, c), path.finest());
+    if (from == infinity || path.side.size() == 1) return from;
+    const LadderPath other = another(path); // a single line may be one of zeros
+    return std::max(from, noise_from(values_along(other, c), other.finest()));
 }
 
 bool LadderMasses::diverge(const LadderPath& path, Rows rows, std::size_t c, double noise) {
@@ -219,10 +230,12 @@ bool LadderMasses::ridge_diverges_along(const LadderPath& path, std::size_t c) {
 
 bool LadderMasses::diverge_along(LadderPath path, std::size_t c) {
     if (goes_to_infinity(path, raw_.evaluator().domain())) return diverge_at_infinity(path, c);
-    // Shells around a place inside, none of which holds an end.
+    // Shells around a place inside, none of which holds an end, in the direction of the path.
+    double part = 1;
     for (std::size_t d = 0; d < path.side.size(); ++d)
         if (const double u = path.anchors[d].u; path.side[d] != 0 && u != 0 && u != 1)
-            path.reach[d] = std::min({path.reach[d], u, 1 - u});
+            part = std::min(part, std::min(u, 1 - u) / path.reach[d]);
+    for (double& reach : path.reach) reach *= part;
     if (path.finest() < least_resolved) return false;
     return masses_diverge(values_along(path, c), path.finest(), path.codimension(), false, path.end());
 }

@@ -34,6 +34,8 @@ class LadderMasses {
     const std::vector<double>& unresolved() const { return unresolved_; }
 
   private:
+    // A ladder to the same place in another direction, and through another point in the variables that do not move.
+    LadderPath another(LadderPath path);
     // The last shell of a ladder where a component is not zero; the second one if that is zero, too.
     static std::size_t last_shell(Rows rows, std::size_t c);
     static double mass(const LadderPath& path, Rows rows, std::size_t c, std::size_t before);

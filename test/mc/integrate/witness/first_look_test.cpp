@@ -374,6 +374,25 @@ TEST(FirstLook, LogarithmsOfWidePeaksAreFoundToo) {
     EXPECT_NEAR(r.log_value, 0.5 * std::log(3.141592653589793), 4 * r.log_error + 1e-9);
 }
 
+// Values on the line x = y are rounding errors, in the directions of that line alone: neither noise nor divergence beside it.
+TEST(FirstLook, LinesOfZerosAreNoNoise) {
+    for (double shift : {50.0, 1e3, 1e8}) {
+        const auto difference = [shift](std::span<const double> x) {
+            return std::pow(x[0] + shift, 2) - std::pow(x[1] + shift, 2);
+        };
+        const Integrand guide(difference);
+        const std::vector<Integrand::BatchFunction> guides{
+            [&](const PointBatch& x, ValueBatch y) { guide(x, y); }};
+        const Evaluator evaluator([&](std::span<const double> x) { return std::abs(difference(x)); },
+                                  Domain::unit_cube(2));
+        for (std::uint64_t seed = 0; seed < 150; ++seed) {
+            const FirstLook look = first_look(evaluator, {.guides = guides, .seed = seed});
+            EXPECT_TRUE(look.noise.empty()) << shift << " " << seed;
+            EXPECT_EQ(look.divergence, "") << shift << " " << seed;
+        }
+    }
+}
+
 // A regular ring of height 1e5 and half width 1e-5 on a plain of height 1, whose guide is known: the ring holds 8.8, of
 // which a box around one of its points has 1/10^5.
 TEST(FirstLook, MeasuresRidgesOfGuides) {

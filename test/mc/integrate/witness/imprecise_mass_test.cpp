@@ -1,5 +1,7 @@
 #include <cmath>
 #include <gtest/gtest.h>
+#include <limits>
+#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/integrate.h"
@@ -8,16 +10,22 @@
 namespace montelux {
 namespace {
 
-// Sets the rounding error of each component to a function of a point.
+// The integrand, whose relative rounding error is a function of a point.
 template <typename F>
-Integrand::BatchFunction rounding_of(F f) {
-    return [f](const PointBatch& x, ValueBatch y) {
+Integrand with_relative(const Integrand& f, F error) {
+    return f.with_rounding([f, error](const PointBatch& x, ValueBatch y) {
+        ValueBuffer values(x.count(), f.components());
+        f(x, values);
         std::vector<double> point(static_cast<std::size_t>(x.dimensions()));
         for (std::size_t i = 0; i < x.count(); ++i) {
             x.gather(i, point.data());
-            for (int c = 0; c < y.components(); ++c) y(i, c) = f(point);
+            for (int c = 0; c < f.components(); ++c) {
+                const double value = std::as_const(values)(i, c), half = value * error(point);
+                y(i, 2 * c) = value + half;
+                y(i, 2 * c + 1) = value - half;
+            }
         }
-    };
+    });
 }
 
 using Point = std::span<const double>;
@@ -27,14 +35,13 @@ using Point = std::span<const double>;
 TEST(ImpreciseMass, IsUnbiasedAtAllScales) {
     struct Case {
         Integrand f;
-        Integrand::BatchFunction rounding;
         Domain domain;
         double exact;
         std::vector<std::vector<double>> landmarks = {};
     };
-    const auto one = [](Point) { return 1.0; };
-    const auto below = [](double size) {
-        return rounding_of([=](Point x) {
+    const Integrand one([](Point) { return 1.0; });
+    const auto lost_below = [](const Integrand& f, double size) {
+        return with_relative(f, [=](Point x) {
             double product = 1;
             for (double u : x) product *= std::abs(u);
             return product < size ? 2.0 : 0.0;
@@ -42,25 +49,24 @@ TEST(ImpreciseMass, IsUnbiasedAtAllScales) {
     };
     const double volume = 1e-8, logarithm = -std::log(volume);
     const std::vector<Case> cases = {
-        {one, below(1e-6), Domain::unit_cube(1), 1e-6},
-        {[](double x) { return 1 / std::sqrt(x); }, below(1e-8), Domain::interval(0, 1), 2e-4},
-        {one, below(volume), Domain::unit_cube(2), volume * (1 + logarithm)},
-        {one, below(volume), Domain::unit_cube(3), volume * (1 + logarithm + logarithm * logarithm / 2)},
+        {lost_below(one, 1e-6), Domain::unit_cube(1), 1e-6},
+        {lost_below([](double x) { return 1 / std::sqrt(x); }, 1e-8), Domain::interval(0, 1), 2e-4},
+        {lost_below(one, volume), Domain::unit_cube(2), volume * (1 + logarithm)},
+        {lost_below(one, volume), Domain::unit_cube(3), volume * (1 + logarithm + logarithm * logarithm / 2)},
         // At the origin inside, at a landmark, far out.
-        {one, below(1e-7), Domain::interval(-1, 2), 2e-7},
-        {one,
-         rounding_of([](Point x) { return std::abs(x[0] - 0.3) < 1e-7 ? 1.0 : 0.0; }),
+        {lost_below(one, 1e-7), Domain::interval(-1, 2), 2e-7},
+        {with_relative(one, [](Point x) { return std::abs(x[0] - 0.3) < 1e-7 ? 1.0 : 0.0; }),
          Domain::unit_cube(1),
          2e-7,
          {{0.3}}},
-        {[](double x) { return 1 / (x * x); }, rounding_of([](Point x) { return x[0] > 1e6 ? 1.0 : 0.0; }),
+        {with_relative([](double x) { return 1 / (x * x); }, [](Point x) { return x[0] > 1e6 ? 1.0 : 0.0; }),
          Domain::interval(1, std::numeric_limits<double>::infinity()), 1e-6},
         // Where values are precise to two digits, their error counts.
-        {one, rounding_of([](Point x) { return x[0] < 0.5 ? 1e-3 : 0.02; }), Domain::unit_cube(1),
+        {with_relative(one, [](Point x) { return x[0] < 0.5 ? 1e-3 : 0.02; }), Domain::unit_cube(1),
          0.5 * 1e-3 + 0.5},
     };
     for (std::size_t i = 0; i < cases.size(); ++i) {
-        const Evaluator evaluator(cases[i].f.with_rounding(cases[i].rounding), cases[i].domain);
+        const Evaluator evaluator(cases[i].f, cases[i].domain);
         constexpr int seeds = 64;
         double sum = 0, squares = 0;
         for (std::uint64_t seed = 0; seed < seeds; ++seed) {
@@ -80,19 +86,37 @@ TEST(ImpreciseMass, OfEachComponentAndOnlyWhereRoundingIsKnown) {
         y[1] = -3 * x[0];
     });
     EXPECT_TRUE(imprecise_mass(Evaluator(f, Domain::unit_cube(1)), {}, 0).empty());
-    const auto all_lost = rounding_of([](Point) { return 1.0; });
-    const std::vector<double> mass =
-        imprecise_mass(Evaluator(f.with_rounding(all_lost), Domain::unit_cube(1)), {}, 0);
-    ASSERT_EQ(mass.size(), 2u);
-    EXPECT_NEAR(mass[0], 1, 0.1);
-    EXPECT_NEAR(mass[1], 1.5, 0.15);
-    EXPECT_TRUE(imprecise_mass(Evaluator(Integrand([](Point) { return 1.0; }).with_rounding(all_lost),
-                                         Domain::unit_cube(65)),
-                               {}, 0)
-                    .empty());
-    const auto not_a_number = rounding_of([](Point) { return std::nan(""); });
-    EXPECT_EQ(imprecise_mass(Evaluator(f.with_rounding(not_a_number), Domain::unit_cube(1)), {}, 0),
-              std::vector<double>(2, 0.0));
+    const auto all = [](double error) { return [=](Point) { return error; }; };
+    const auto mass = [](const Integrand& g, int n = 1) {
+        return imprecise_mass(Evaluator(g, Domain::unit_cube(n)), {}, 0);
+    };
+    const std::vector<double> lost = mass(with_relative(f, all(1)));
+    ASSERT_EQ(lost.size(), 2u);
+    EXPECT_NEAR(lost[0], 1, 0.1);
+    EXPECT_NEAR(lost[1], 1.5, 0.15);
+    EXPECT_TRUE(mass(with_relative([](Point) { return 1.0; }, all(1)), 65).empty());
+    EXPECT_EQ(mass(with_relative(f, all(std::nan("")))), std::vector<double>(2, 0.0));
+}
+
+// Zeros by rounding in a half of the range: their errors, if these are less than what else is there; else as much as lies in
+// the other half, or as values that lost their digits.
+TEST(ImpreciseMass, OfZerosByRounding) {
+    const auto mass = [](double other, double error_of_zeros, double error_of_others) {
+        const Integrand f = Integrand([=](double x) {
+                                return x < 0.5 ? 0 : other;
+                            }).with_rounding([=](const PointBatch& x, ValueBatch y) {
+            for (std::size_t i = 0; i < x.count(); ++i) {
+                const bool zero = x(i, 0) < 0.5;
+                y(i, 0) = zero ? 0 : other;
+                y(i, 1) = zero ? error_of_zeros : other + error_of_others;
+            }
+        });
+        return imprecise_mass(Evaluator(f, Domain::unit_cube(1)), {}, 0).at(0);
+    };
+    EXPECT_NEAR(mass(4, 0.01, 0), 0.005, 0.0005);
+    EXPECT_NEAR(mass(4, 1e6, 0), 0.5 * 2, 0.1);
+    EXPECT_NEAR(mass(4, 1e6, 1), 0.5 * 4 + 2, 0.3);
+    EXPECT_NEAR(mass(0, 3, 0), 1.5, 0.15);
 }
 
 } // namespace
