@@ -31,7 +31,8 @@ void RandomRounding::turn() { std::fesetround(goes_up() ? FE_UPWARD : FE_DOWNWAR
 
 double RandomRounding::moved(double value) {
     constexpr double up = std::numeric_limits<double>::infinity();
-    return std::isinf(value) ? value : std::nextafter(value, goes_up() ? up : -up);
+    if (value == 0 || std::isinf(value)) return value; // underflow and overflow are no loss of digits
+    return std::nextafter(value, goes_up() ? up : -up);
 }
 
 NearestRounding::NearestRounding() : before_(std::fegetround()) { std::fesetround(FE_TONEAREST); }

@@ -17,7 +17,7 @@ class RandomRounding {
 
     // Chooses the direction of the operations that follow.
     static void turn();
-    // One of the two neighbours of a value.
+    // One of the two neighbours of a value, but for zero and infinity.
     static double moved(double value);
 };
 
