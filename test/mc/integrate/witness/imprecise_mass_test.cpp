@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -5,6 +7,7 @@
 #include <vector>
 
 #include "montelux/mc/integrate/integrate.h"
+#include "montelux/mc/integrate/integrate_log.h"
 #include "montelux/mc/integrate/witness/imprecise_mass.h"
 
 namespace montelux {
@@ -117,6 +120,60 @@ TEST(ImpreciseMass, OfZerosByRounding) {
     EXPECT_NEAR(mass(4, 1e6, 0), 0.5 * 2, 0.1);
     EXPECT_NEAR(mass(4, 1e6, 1), 0.5 * 4 + 2, 0.3);
     EXPECT_NEAR(mass(0, 3, 0), 1.5, 0.15);
+}
+
+// A quarter of the integral of one component has no digits; scales of components do not matter.
+TEST(ImpreciseMass, IsInTheErrorOfEveryMethod) {
+    const auto f = [](double x, double y) { return std::array{1e30 * x, y}; };
+    const Integrand plain = Integrand::vector_valued(2, [f](std::span<const double> x, std::span<double> y) {
+        std::ranges::copy(f(x[0], x[0]), y.begin());
+    });
+    const auto rounded = [f](double relative) {
+        return [f, relative](const PointBatch& x, ValueBatch y) {
+            for (std::size_t i = 0; i < x.count(); ++i) {
+                const double error = x(i, 0) < 0.5 ? relative : 0;
+                const auto [big, small] = f(x(i, 0), x(i, 0));
+                y(i, 0) = big * (1 - error);
+                y(i, 1) = big * (1 + error);
+                y(i, 2) = small;
+                y(i, 3) = small * (1 + 1e-15);
+            }
+        };
+    };
+    for (const char* method : {"auto", "adaptive", "vegas", "quasi", "cubature", "basic"}) {
+        const auto run = [&](const Integrand& g) {
+            return integrate(g, Domain::unit_cube(1), Method::named(method),
+                             {.relative_error = 1e-2, .evaluations = 100'000});
+        };
+        const IntegrationResult r = run(plain.with_rounding(rounded(1)));
+        EXPECT_FALSE(r.converged()) << method;
+        EXPECT_NEAR(r.standard_error[0], 0.125e30, 0.02e30) << method;
+        EXPECT_LT(r.standard_error[1], 1e-2) << method;
+        EXPECT_NE(to_string(r).find("loses by cancellation"), std::string::npos) << method;
+        // One part in 1e-15 is no matter.
+        const IntegrationResult known = run(plain.with_rounding(rounded(1e-15))), unknown = run(plain);
+        EXPECT_TRUE(known.converged()) << method;
+        EXPECT_EQ(known.value, unknown.value) << method;
+        EXPECT_EQ(known.standard_error, unknown.standard_error) << method;
+        EXPECT_EQ(known.evaluations, unknown.evaluations) << method;
+    }
+}
+
+// Logarithms, of which an error of 1 is one of a factor e.
+TEST(ImpreciseMass, OfLogarithmsIsThatOfTheIntegrand) {
+    for (double error : {1.0, 1e-15}) {
+        const Integrand log_f = Integrand([](double x) {
+                                    return -2000 - x;
+                                }).with_rounding([error](const PointBatch& x, ValueBatch y) {
+            for (std::size_t i = 0; i < x.count(); ++i) {
+                y(i, 0) = -2000 - x(i, 0) - error;
+                y(i, 1) = -2000 - x(i, 0) + error;
+            }
+        });
+        const LogIntegrationResult r =
+            integrate_log(log_f, Domain::unit_cube(1), Method(), {.relative_error = 1e-3});
+        EXPECT_EQ(r.relative.converged(), error < 1e-3) << error;
+    }
 }
 
 } // namespace
