@@ -14,7 +14,7 @@ namespace montelux {
 namespace {
 
 constexpr std::size_t points = 4096, batch = 256;
-constexpr int most_of_box = 64; // variables
+constexpr int most_of_box = 64;    // variables
 constexpr double imprecise = 0.01; // relative error of values that lost their digits
 constexpr double finest = 54;      // exponent of the smallest distance from an anchor
 constexpr double uniform_share_of_scales = 1.0 / 3;
