@@ -138,7 +138,8 @@ class Look {
         for (std::size_t d = 0; d < n_; ++d) {
             if (path.side[d] == 0) continue;
             slow.place[d] = path.anchors[d].u;
-            if (n_ > 1 && slow.place[d] != 0 && slow.place[d] != 1) return; // the search for poles looks inside
+            if (n_ > 1 && slow.place[d] != 0 && slow.place[d] != 1)
+                return; // the search for poles looks inside
         }
         if (look_.slow.size() == SlowShells::most ||
             std::ranges::any_of(look_.slow, [&](const SlowShells& other) {

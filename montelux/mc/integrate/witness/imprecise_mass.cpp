@@ -125,6 +125,7 @@ std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const s
     const Domain& domain = evaluator.domain();
     const LadderPaths paths(domain, static_cast<std::size_t>(n), landmarks, {}, seed);
     std::vector<AllScales> scales;
+    scales.reserve(static_cast<std::size_t>(n));
     for (int d = 0; d < n; ++d) scales.emplace_back(paths.anchors(static_cast<std::size_t>(d)));
     const Corners corners(n);
 
@@ -167,6 +168,7 @@ std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const s
             }
     }
     std::vector<double> mass;
+    mass.reserve(masses.size());
     for (const Imprecise& m : masses) mass.push_back(m.total() / static_cast<double>(points));
     return mass;
 }
