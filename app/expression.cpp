@@ -89,6 +89,7 @@ double rounded(X... x) {
 
 // A function in formulas whose roundings are random: chooses that of the operations after an operand.
 constexpr const char* turning = "_turn_";
+constexpr std::size_t longest_text = 20'000; // that muParser reads
 double turn(double x) {
     RandomRounding::turn();
     return x;
@@ -280,7 +281,10 @@ struct Formulas::Pool {
             try {
                 for (std::size_t d = 0; d < variables.size(); ++d)
                     parser.DefineVar(variables[d], &lease->values[d]);
-                parser.SetExpr(rounding == Rounding::nearest ? text : with_turns(text, variables));
+                const std::string turned = with_turns(text, variables);
+                // muParser refuses longer texts; then one direction serves all operations between two functions.
+                const bool turns = rounding != Rounding::nearest && turned.size() < longest_text;
+                parser.SetExpr(turns ? turned : text);
                 parser.Eval();
             } catch (const mu::ParserError& error) {
                 explain(error, text, option, parser, variables);

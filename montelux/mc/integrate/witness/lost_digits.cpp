@@ -118,7 +118,8 @@ double mass_beyond(const ShellValues& values, double last, int codimension, doub
     if (until <= last) return 0;
     if (until == infinity && fall < least_fall) return infinity;
     const std::array<double, 1> k{precise * last};
-    const double sum = -std::expm1(-std::numbers::ln2 * fall * (until - last)) / fall;
+    const double sum = fall == 0 ? std::numbers::ln2 * (until - last)
+                                 : -std::expm1(-std::numbers::ln2 * fall * (until - last)) / fall;
     return codimension * values(k)[0] * std::exp2(-codimension * k[0] - fall * (last - k[0])) * sum;
 }
 
