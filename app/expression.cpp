@@ -29,7 +29,7 @@ constexpr std::array<std::pair<const char*, double>, 4> mathematical_constants{
      {"inf", std::numeric_limits<double>::infinity()},
      {"nan", std::numeric_limits<double>::quiet_NaN()}}};
 
-// Functions that muParser does not bring itself, and those that round: its hyperbolic inverses cancel digits.
+// Functions that round, and those that muParser lacks. Its own asinh, acosh and atanh lose digits by cancellation.
 template <typename Define>
 void define_functions(const Define& define) {
     define("sin", [](double x) { return std::sin(x); });
@@ -62,7 +62,7 @@ void define_functions(const Define& define) {
     define("lgamma", [](double x) { return std::lgamma(x); });
 }
 
-// Functions that round nothing, or by operators alone.
+// Functions that are exact, or round by operators alone.
 template <typename Define>
 void define_exact_functions(const Define& define) {
     define("floor", [](double x) { return std::floor(x); });
@@ -70,9 +70,8 @@ void define_exact_functions(const Define& define) {
     define("mod", [](double x, double y) { return x - y * std::floor(x / y); });
 }
 
-// The function with a random rounding: libraries round many values to the nearest number in any mode. Whole numbers of whole
-// numbers are exact, but for those to which tanh and the like tend; zeros, which operations that round down make negative, are
-// positive.
+// Function value with a random last digit, since libraries round to nearest in any mode. A whole result of whole arguments
+// stays exact, except limits such as tanh(20) = 1. Negative zeros, which rounding down creates, become positive.
 template <typename F, typename... X>
 double rounded(X... x) {
     double y = 0;
@@ -87,7 +86,7 @@ double rounded(X... x) {
     return exact ? y : RandomRounding::moved(y);
 }
 
-// A function in formulas whose roundings are random: chooses that of the operations after an operand.
+// Identity in formulas with random roundings; chooses the direction of the next operations.
 constexpr const char* turning = "_turn_";
 constexpr std::size_t longest_text = 20'000; // that muParser reads
 double turn(double x) {
@@ -95,7 +94,7 @@ double turn(double x) {
     return x;
 }
 
-// The formula with each variable in a call of that function.
+// Formula text with each variable wrapped in a call of that function.
 std::string with_turns(const std::string& text, const std::vector<std::string>& variables) {
     std::string all;
     for (std::size_t i = 0; i < text.size();) {

@@ -31,7 +31,7 @@ class Formulas {
     std::vector<std::vector<double>> landmarks() const;
     // Functions that are zero near such points (formula_guides).
     std::vector<Integrand::BatchFunction> guides() const;
-    // Values with random roundings (Integrand::with_rounding), those of constants included.
+    // Two values per formula with random roundings, of constants too (Integrand::with_rounding).
     Integrand::BatchFunction rounding() const;
     // Coordinate d of a point is the value of variable d.
     void operator()(const PointBatch& x, ValueBatch y) const;

@@ -227,6 +227,10 @@ class Results(ProgramTest):
         tested = {f.split("(")[0] for f in ROUNDED + EXACT} | {"sum"}
         self.assertEqual(sorted(tested), sorted(known.split(", ")))
 
+    def test_long_formulas(self):
+        result = self.json("integrate --relative-error 1e-3 --over x=0:1", "+".join(["x"] * 2400))
+        self.assert_near(first(result["value"]), 1200, 1e-6)
+
     def test_outcomes(self):
         self.expect_each(OUTCOMES, "integrate ")
 

@@ -108,8 +108,8 @@ class Integrand {
         return other;
     }
     std::span<const BatchFunction> guides() const { return guides_; }
-    // Returns this integrand with a function that fills in two more values for each component, 2 c and 2 c + 1, rounded
-    // otherwise: by their difference from it a value is uncertain. What rounding loses of the integral becomes part of its error.
+    // Returns this integrand with a rounding function, which fills in two values of component c, at 2 c and 2 c + 1, computed
+    // with other roundings. Their differences from f estimate its rounding error, which becomes part of the integral's error.
     Integrand with_rounding(BatchFunction twice) const {
         Integrand other = *this;
         other.rounding_ = std::move(twice);

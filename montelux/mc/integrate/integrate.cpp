@@ -156,18 +156,18 @@ class Run {
                 }
                 if (!moved) break;
             }
+            const FirstLook& seen = evidence_.seen();
+            if (seen.evaluations > 0)
+                rate_ = 1 / (work_per_evaluation + std::max(0.0, seen.seconds - first_calls) /
+                                                       static_cast<double>(seen.evaluations));
             const std::vector<double> largest = scale_.largest();
-            evidence_.weigh_rounding(f_);
+            evidence_.weigh_rounding(f_, has_time() ? budget_.time.count() * rate_ : infinity);
             scale_.restore_largest(largest);
         } catch (const IntegrandInterrupted&) {
             interruption_.clear_deadline();
             return interruption_.cancelled() ? StopReason::interrupted : StopReason::time;
         }
         interruption_.clear_deadline();
-        const FirstLook& seen = evidence_.seen();
-        if (seen.evaluations > 0)
-            rate_ = 1 / (work_per_evaluation +
-                         std::max(0.0, seen.seconds - first_calls) / static_cast<double>(seen.evaluations));
         make_estimator();
         return std::nullopt;
     }

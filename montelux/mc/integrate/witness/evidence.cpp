@@ -75,8 +75,11 @@ void Evidence::look(const Integrand& f, std::uint64_t most_evaluations) {
     std::ranges::fill(examined_, Examined());
 }
 
-void Evidence::weigh_rounding(const Integrand& f) {
-    imprecise_ = imprecise_mass(evaluator_, f.landmarks(), seed_);
+void Evidence::weigh_rounding(const Integrand& f, double evaluations) {
+    constexpr double most_points = 4096, share = 0.1, evaluations_per_point = 3;
+    imprecise_ = imprecise_mass(
+        evaluator_, f.landmarks(), seed_,
+        static_cast<std::size_t>(std::min(most_points, share * evaluations / evaluations_per_point)));
     largest_.clear();
 }
 

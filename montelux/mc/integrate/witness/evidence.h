@@ -23,8 +23,9 @@ class Evidence {
     // Takes the first look by the landmarks and guides of f, with at most so many evaluations; forgets an earlier one,
     // whose evaluations still count.
     void look(const Integrand& f, std::uint64_t most_evaluations);
-    // Notes what of the integral lies where the values of f have lost their digits, if f knows its rounding.
-    void weigh_rounding(const Integrand& f);
+    // Estimates what rounding loses of the integral, if f has a rounding function. `evaluations` are those that the run
+    // has time for; it takes at most a tenth of them.
+    void weigh_rounding(const Integrand& f, double evaluations);
     // Follows a change of the values' unit, by powers of two with these exponents, one per component. Largest values are
     // forgotten: an estimator that starts again meets them again.
     void rescale(std::span<const double> exponents);

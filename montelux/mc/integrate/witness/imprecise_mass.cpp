@@ -13,8 +13,8 @@
 namespace montelux {
 namespace {
 
-constexpr std::size_t points = 4096, batch = 256;
-constexpr int most_of_box = 64;    // variables
+constexpr std::size_t batch = 256;
+constexpr int most_dimensions_weighed = 64;
 constexpr double imprecise = 0.01; // relative error of values that lost their digits
 constexpr double finest = 54;      // exponent of the smallest distance from an anchor
 constexpr double uniform_share_of_scales = 1.0 / 3;
@@ -106,8 +106,8 @@ class Imprecise {
     }
     // Zeros by rounding hold no more than their errors, and about as much as other values that lost their digits, or as all:
     // towards a pole errors grow without limit, and values do not.
-    double total() const {
-        const double size = volume_ > 0 ? mass_ / volume_ : all_ / static_cast<double>(points);
+    double total(double points) const {
+        const double size = volume_ > 0 ? mass_ / volume_ : all_ / points;
         return of_digits_ + mass_ + (size > 0 ? std::min(of_zeros_, zero_volume_ * size) : of_zeros_);
     }
 
@@ -118,9 +118,9 @@ class Imprecise {
 } // namespace
 
 std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const std::vector<double>> landmarks,
-                                   std::uint64_t seed) {
+                                   std::uint64_t seed, std::size_t points) {
     const Integrand::BatchFunction& rounding = evaluator.integrand().rounding();
-    if (!rounding || evaluator.dimensions() > most_of_box) return {};
+    if (!rounding || evaluator.dimensions() > most_dimensions_weighed || points < batch) return {};
     const int n = evaluator.dimensions(), components = evaluator.components();
     const Domain& domain = evaluator.domain();
     const LadderPaths paths(domain, static_cast<std::size_t>(n), landmarks, {}, seed);
@@ -135,7 +135,8 @@ std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const s
     ValueBuffer g(batch, components), twice(batch, 2 * components);
     NonFiniteCount ignored;
     const ScrambledSobol sobol(2 * n + 1, hash_key(seed, stream), 0);
-    for (std::size_t first = 0; first < points; first += batch) {
+    const std::size_t whole = points / batch * batch;
+    for (std::size_t first = 0; first < whole; first += batch) {
         sobol.fill(random, first);
         for (std::size_t i = 0; i < batch; ++i) {
             const double choice = random.view()(i, 2 * n);
@@ -169,7 +170,8 @@ std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const s
     }
     std::vector<double> mass;
     mass.reserve(masses.size());
-    for (const Imprecise& m : masses) mass.push_back(m.total() / static_cast<double>(points));
+    const auto count = static_cast<double>(whole);
+    for (const Imprecise& m : masses) mass.push_back(m.total(count) / count);
     return mass;
 }
 

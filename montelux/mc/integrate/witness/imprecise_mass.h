@@ -1,6 +1,7 @@
 // The part of an integral where values have lost their digits by cancellation.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -9,13 +10,14 @@
 
 namespace montelux {
 
-// What rounding may lose of the integral of each g_c: the integral of its rounding error where it is precise to two digits,
-// and of all |g_c| elsewhere, since what lies closer to a point where digits end is of the order of what lies before it. Values
-// that are zero by rounding count as others that lost their digits. By 4096 points, half of them uniform, the others at
-// distances of all scales: from ends, centre, origin and landmarks in each variable by itself, and from corners in all together,
-// since products are small near faces. These evaluations are not counted. Empty where the integrand does not know its rounding,
-// and for more than 64 variables.
+// Upper estimate of what rounding loses of the integral of each g_c:
+// - the rounding error itself where it is at most 1 % of |g_c|,
+// - all of |g_c| elsewhere, since towards a pole about as much is lost as the imprecise values nearby hold,
+// - where g_c is zero by rounding, the mean of imprecise values (else, of all), at most the rounding error.
+// Half of the points, in batches of 256, are uniform. The others have distances of all scales from ends, centre, origin and
+// landmarks in each variable, or from a corner in all variables, since products are small near faces.
+// Returns an empty vector if the integrand has no rounding function, beyond 64 variables, or for fewer than 256 points.
 std::vector<double> imprecise_mass(const Evaluator& evaluator, std::span<const std::vector<double>> landmarks,
-                                   std::uint64_t seed);
+                                   std::uint64_t seed, std::size_t points = 4096);
 
 } // namespace montelux

@@ -66,7 +66,7 @@ double LadderMasses::noise(const LadderPath& path, Rows rows, std::size_t c) {
     if (!(mass(path, rows, c, 0) > mass(path, rows, c, 1)) || is_negligible(path, rows, c)) return infinity;
     const double from = noise_from(values_along(path, c), path.finest());
     if (from == infinity || path.side.size() == 1) return from;
-    const LadderPath other = another(path); // a single line may be one of zeros
+    const LadderPath other = another(path); // f may be zero along a single line
     return std::max(from, noise_from(values_along(other, c), other.finest()));
 }
 

@@ -32,8 +32,8 @@ struct LadderPath {
     // Shells at k have a volume of 2^(-k codimension).
     int codimension() const;
     double finest() const;
-    // Exponent of the distance from zero of the range's end, if that is small: what grows towards zero grows no more in shells
-    // beyond it. Infinite elsewhere.
+    // Exponent of the distance between zero and the range's end where that is small, else infinity. Functions that grow towards
+    // zero are constant in shells beyond it.
     double end() const;
     // Volume of the shell around the anchor; `across`: widths in the variables that do not move.
     double volume(double exponent, const std::vector<double>& across) const;

@@ -169,7 +169,7 @@ TEST(Evidence, DigitsLostByCancellationAreInTheError) {
     }
 }
 
-// Ranges that end in the place where digits are lost: 10 of 10.4 by doubles, within 1e-8 and below nothing.
+// Ranges that begin below 1e-8, where 1 - cos x is rounded to zero.
 TEST(Evidence, DigitsLostBeforeTheEndOfARangeAreNoDivergence) {
     for (double from : {1e-9, 1e-10}) {
         const IntegrationResult r =

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
@@ -101,8 +102,7 @@ TEST(ImpreciseMass, OfEachComponentAndOnlyWhereRoundingIsKnown) {
     EXPECT_EQ(mass(with_relative(f, all(std::nan("")))), std::vector<double>(2, 0.0));
 }
 
-// Zeros by rounding in a half of the range: their errors, if these are less than what else is there; else as much as lies in
-// the other half, or as values that lost their digits.
+// Zeros by rounding in half of the range count with their errors, at most with the mean of imprecise values, or of all.
 TEST(ImpreciseMass, OfZerosByRounding) {
     const auto mass = [](double other, double error_of_zeros, double error_of_others) {
         const Integrand f = Integrand([=](double x) {
@@ -159,7 +159,23 @@ TEST(ImpreciseMass, IsInTheErrorOfEveryMethod) {
     }
 }
 
-// Logarithms, of which an error of 1 is one of a factor e.
+// A rounding function of 0.1 ms a point, of which 4096 would take four times the limit.
+TEST(ImpreciseMass, TakesAPartOfTheTime) {
+    const auto slow = [](double x) {
+        const auto stop = std::chrono::steady_clock::now() + std::chrono::microseconds(100);
+        while (std::chrono::steady_clock::now() < stop) {
+        }
+        return x;
+    };
+    const Integrand f = Integrand(slow).with_rounding([slow](const PointBatch& x, ValueBatch y) {
+        for (std::size_t i = 0; i < x.count(); ++i) y(i, 0) = y(i, 1) = slow(x(i, 0));
+    });
+    const IntegrationResult r = integrate(f, Domain::unit_cube(1), Method(),
+                                          {.relative_error = 1e-3, .time = std::chrono::milliseconds(100)});
+    EXPECT_NEAR(r.value[0], 0.5, 1e-3);
+}
+
+// An error of 1 in a logarithm is a factor of e.
 TEST(ImpreciseMass, OfLogarithmsIsThatOfTheIntegrand) {
     for (double error : {1.0, 1e-15}) {
         const Integrand log_f = Integrand([](double x) {

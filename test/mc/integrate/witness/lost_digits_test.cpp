@@ -28,6 +28,16 @@ TEST(LostDigits, MassOfWhatIsRoundedToZero) {
     EXPECT_EQ(mass_of_lost_digits(of(diverges), 24, 36, 1), infinity);
 }
 
+// Masses of 1 / r are ln 2 an octave: without an end they are infinite, up to one they are not.
+TEST(LostDigits, MassUpToAnEnd) {
+    const ShellValues g = of([](double r) { return 1 / r; });
+    EXPECT_EQ(mass_beyond(g, 20, 1), infinity);
+    EXPECT_NEAR(mass_beyond(g, 20, 1, 30), 10 * std::log(2.0), 1e-9);
+    EXPECT_EQ(mass_beyond(g, 20, 1, 19), 0);
+    const ShellValues falls = of([](double r) { return 1 / std::sqrt(r); });
+    EXPECT_NEAR(mass_beyond(falls, 20, 1, 30), 2 * (std::exp2(-10) - std::exp2(-15)), 1e-9);
+}
+
 // Noise is as large as the value where the terms that cancel have lost all digits of it: at exp r - 1 - r = 2^-53.
 TEST(LostDigits, NoiseBeginsWhereTermsHaveCancelled) {
     for (double finest : {46.0, finest_at_origin}) {
