@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "montelux/mc/integrate/domain_probe.h"
+#include "montelux/mc/integrate/infinity.h"
 #include "montelux/mc/integrate/integrand_scale.h"
 #include "montelux/mc/integrate/integrate_log.h"
 #include "montelux/mc/integrate/integration_request.h"
