@@ -67,7 +67,12 @@ template <typename Define>
 void define_exact_functions(const Define& define) {
     define("floor", [](double x) { return std::floor(x); });
     define("ceil", [](double x) { return std::ceil(x); });
-    define("mod", [](double x, double y) { return x - y * std::floor(x / y); });
+}
+
+double mod(double x, double y) { return x - y * std::floor(x / y); }
+// What roundings of x leave of it: all values where neighbours of x lie further apart than y.
+double rounded_mod(double x, double y) {
+    return std::abs(x / y) < 0x1p53 ? mod(x, y) : y * RandomRounding::fraction();
 }
 
 // Function value with a random last digit, since libraries round to nearest in any mode. A whole result of whole arguments
@@ -137,15 +142,29 @@ mu::Parser make_parser(const std::vector<std::string>& variables, const NamedCon
     define_exact_functions(define);
     if (rounding == Rounding::nearest) {
         define_functions(define);
+        define("mod", &mod);
     } else {
         define_functions(define_rounded);
+        define("mod", &rounded_mod);
         parser.DefineFun(turning, &turn);
     }
     for (const auto& [name, value] : mathematical_constants)
         if (std::find(variables.begin(), variables.end(), name) == variables.end())
             parser.DefineConst(name, value);
-    for (const auto& [name, value] : given) parser.DefineConst(name, value);
+    for (const NamedConstant& c : given) parser.DefineConst(c.name, c.value);
     return parser;
+}
+
+// The constants with random roundings in their formulas.
+NamedConstants with_random_roundings(const NamedConstants& given, Rounding rounding) {
+    NamedConstants all;
+    for (const NamedConstant& c : given) {
+        mu::Parser parser = make_parser({}, all, rounding);
+        const RandomRounding rounds(hash_key(all.size()), rounding == Rounding::opposite);
+        parser.SetExpr(c.text);
+        all.push_back({c.name, parser.Eval(), c.text});
+    }
+    return all;
 }
 
 std::string name_at(const std::string& text, std::size_t at) {
@@ -351,7 +370,7 @@ Integrand::BatchFunction Formulas::rounding() const {
         auto pool = std::make_shared<Pool>();
         pool->texts = pool_->texts;
         pool->variables = pool_->variables;
-        pool->given = pool_->given;
+        pool->given = with_random_roundings(pool_->given, rounding);
         pool->rounding = rounding;
         pools.push_back(std::move(pool));
     }

@@ -4,15 +4,19 @@
 #include <memory>
 #include <span>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "montelux/mc/integrate/integrand.h"
 
 namespace montelux::app {
 
-// Names that stand for numbers in formulas, in the order in which they were given.
-using NamedConstants = std::vector<std::pair<std::string, double>>;
+// A name that stands for a number in formulas.
+struct NamedConstant {
+    std::string name;
+    double value = 0;
+    std::string text; // its formula, in which constants before it may stand
+};
+using NamedConstants = std::vector<NamedConstant>; // in the order in which they were given
 
 // Formulas in the same variables; each is one component of a function of a point. Known besides the
 // variables and the given constants: + - * / ^, comparisons, && ||, c ? a : b, the constants pi, e, inf and nan, and the functions

@@ -35,6 +35,12 @@ double RandomRounding::moved(double value) {
     return std::nextafter(value, goes_up() ? up : -up);
 }
 
+double RandomRounding::fraction() {
+    state = mix64(state + golden_gamma);
+    const double u = (static_cast<double>(state >> 12) + 0.5) * 0x1p-52;
+    return is_opposite ? 1 - u : u;
+}
+
 NearestRounding::NearestRounding() : before_(std::fegetround()) { std::fesetround(FE_TONEAREST); }
 NearestRounding::~NearestRounding() { std::fesetround(before_); }
 

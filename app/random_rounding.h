@@ -19,6 +19,8 @@ class RandomRounding {
     static void turn();
     // One of the two neighbours of a value, but for zero and infinity.
     static double moved(double value);
+    // A random number in (0, 1).
+    static double fraction();
 };
 
 // Rounds to the nearest number for a scope.

@@ -109,8 +109,8 @@ Variables read_variables(const std::vector<std::string>& over, bool boxes, const
         for (const std::string& name : names) {
             if (std::find(variables.names.begin(), variables.names.end(), name) != variables.names.end())
                 throw UsageError(option, "the variable '" + name + "' is given twice");
-            for (const auto& [constant_name, value] : given)
-                if (constant_name == name)
+            for (const NamedConstant& c : given)
+                if (c.name == name)
                     throw UsageError(option,
                                      "'" + name + "' is a constant of --let; a variable needs another name");
             variables.names.push_back(name);
@@ -131,12 +131,12 @@ NamedConstants read_constants(const std::vector<std::string>& let) {
             throw UsageError(option, "no value is given; expected NAME=VALUE, for example s=0.1");
         const std::string name = trimmed(std::string_view(text).substr(0, equal));
         check_variable_name(name, option);
-        for (const auto& [known, value] : constants)
-            if (known == name) throw UsageError(option, "the constant '" + name + "' is given twice");
-        const double value = constant(text.substr(equal + 1), option, constants);
-        if (std::isnan(value))
-            throw UsageError(option, "the value '" + text.substr(equal + 1) + "' is not a number");
-        constants.emplace_back(name, value);
+        for (const NamedConstant& c : constants)
+            if (c.name == name) throw UsageError(option, "the constant '" + name + "' is given twice");
+        const std::string formula = text.substr(equal + 1);
+        const double value = constant(formula, option, constants);
+        if (std::isnan(value)) throw UsageError(option, "the value '" + formula + "' is not a number");
+        constants.push_back({name, value, formula});
     }
     return constants;
 }

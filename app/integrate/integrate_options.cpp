@@ -133,7 +133,7 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
         CompiledFunction::Form form;
         if (!o.components.empty())
             form.components = static_cast<int>(whole_number(o.components, "--components", 1, 100'000));
-        for (const auto& [name, value] : constants) form.parameters.push_back(value);
+        for (const NamedConstant& c : constants) form.parameters.push_back(c.value);
         if (!o.device.empty()) {
             if (!o.library.empty())
                 throw UsageError("--library",
@@ -160,10 +160,11 @@ NamedIntegrand make_integrand(const IntegrateOptions& o, const std::vector<std::
     std::vector<std::vector<double>> landmarks = parsed.landmarks();
     std::vector<Integrand::BatchFunction> guides = parsed.guides();
     Integrand::BatchFunction rounding = parsed.rounding();
-    NamedIntegrand made =
-        o.device.empty()
-            ? NamedIntegrand{std::move(parsed), formulas}
-            : on_device(o.device, formula_source(formulas, variables, constants), variables, formulas);
+    std::vector<std::pair<std::string, double>> numbers;
+    for (const NamedConstant& c : constants) numbers.emplace_back(c.name, c.value);
+    NamedIntegrand made = o.device.empty() ? NamedIntegrand{std::move(parsed), formulas}
+                                           : on_device(o.device, formula_source(formulas, variables, numbers),
+                                                       variables, formulas);
     made.landmarks = std::move(landmarks);
     made.guides = std::move(guides);
     made.rounding = std::move(rounding);
@@ -363,7 +364,7 @@ IntegrationTask make_task(const IntegrateOptions& o) {
 
     read_densities(o.densities, variables, constants);
     check_densities(variables, integrand, o.log);
-    Domain domain = make_domain(o, variables);
+    Domain domain = make_domain(o, variables).named(variables.names);
     return {variables.names,    constants,         std::move(integrand),
             std::move(domain),  std::move(method), budget,
             std::move(options), points_limit,      o.log};

@@ -108,6 +108,8 @@ CANCELLATIONS = [
     (0.5625, LOST, "'v<1 ? (1/sqrt(1-(v/299792458)^2)-1)*299792458^2 : v^2/2' --over v=0:1.5"),
     (99, LOST, "log(1+exp(-x))*exp(x) --over x=0:100"),
     (1.5, LOST, "x+(1e16+1-1e16) --over x=0:1"),
+    (1.5, LOST, "x+a --let b=1e16 --let a=b+1-b --over x=0:1"),
+    (1.5, LOST, "1+mod(1e20*x,1) --over x=0:1"),
     (1, LOST, "exp(-(x-1e16)) --over x=1e16:inf"),
     (7.809502, LOST, "(1-cos(x*y*z))/(x*y*z)^2.6 --over x,y,z=0:1 --evaluations 1e5"),
 ]

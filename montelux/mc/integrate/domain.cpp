@@ -15,6 +15,7 @@ namespace montelux {
 struct Domain::Implementation {
     int dimensions = 0, uniforms = 0;
     std::vector<Range> ranges;
+    std::vector<std::string> names;
     std::string description;
     double constant_volume = 0;
     bool unit_cube = false;
@@ -301,10 +302,23 @@ Domain Domain::product(const Domain& a, const Domain& b) {
     return Domain(std::move(made));
 }
 
+Domain Domain::named(std::vector<std::string> names) const {
+    if (names.size() != static_cast<std::size_t>(dimensions()))
+        throw Error("Domain", std::to_string(names.size()) + " names are given for " +
+                                  std::to_string(dimensions()) + " coordinates; expected one for each");
+    auto made = std::make_shared<Implementation>(*implementation_);
+    made->names = std::move(names);
+    return Domain(std::move(made));
+}
+
 int Domain::dimensions() const { return implementation_->dimensions; }
 int Domain::uniforms() const { return implementation_->uniforms; }
 std::span<const Range> Domain::ranges() const { return implementation_->ranges; }
 const std::string& Domain::description() const { return implementation_->description; }
+std::string Domain::name(int d) const {
+    if (!implementation_->names.empty()) return implementation_->names[static_cast<std::size_t>(d)];
+    return dimensions() == 1 ? "x" : "x" + std::to_string(d + 1);
+}
 bool Domain::is_unit_cube() const { return implementation_->unit_cube; }
 double Domain::constant_volume() const { return implementation_->constant_volume; }
 void Domain::map(const PointBatch& u, PointBuffer& x, std::span<double> volume) const {

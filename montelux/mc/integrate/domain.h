@@ -47,6 +47,8 @@ class Domain {
                                std::string description = "mapped");
     // Points whose coordinates are those of `a`, then those of `b`.
     static Domain product(const Domain& a, const Domain& b);
+    // The domain with names for its coordinates, which messages use. Throws Error where their number differs.
+    Domain named(std::vector<std::string> names) const;
 
     // Coordinates of a point x.
     int dimensions() const;
@@ -55,6 +57,8 @@ class Domain {
     // The ranges where the domain is a box, else empty.
     std::span<const Range> ranges() const;
     const std::string& description() const;
+    // Name of coordinate d: "x" of one, "x1", "x2", ... of several that have no names.
+    std::string name(int d) const;
     // The unit cube itself: x = u.
     bool is_unit_cube() const;
     // Constant |dx/du|, where it is constant (a finite box), else 0.

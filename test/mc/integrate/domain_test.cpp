@@ -244,6 +244,15 @@ TEST(DomainProduct, EachPartTakesItsOwnUniformNumbers) {
     for (std::size_t d = 0; d < 3; ++d) EXPECT_DOUBLE_EQ(last[1 + d], direction[d]) << d;
     EXPECT_DOUBLE_EQ(last[4], 5.25);
 }
+TEST(DomainNames, AreThoseGivenElseXWithANumber) {
+    const Domain plane = Domain::unit_cube(2);
+    EXPECT_EQ(plane.name(1), "x2");
+    EXPECT_EQ(Domain::interval(0, 1).name(0), "x");
+    EXPECT_EQ(plane.named({"a", "b"}).name(1), "b");
+    EXPECT_EQ(plane.named({"a", "b"}).dimensions(), 2);
+    EXPECT_THROW(plane.named({"a"}), Error);
+}
+
 TEST(DomainMapped, PolarCoordinatesByPointAndByBatch) {
     auto point = [](std::span<const double> u, std::span<double> x) {
         x[0] = u[0] * std::cos(2 * pi * u[1]);

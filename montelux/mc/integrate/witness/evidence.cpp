@@ -137,7 +137,7 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
                     : search_pole(raw, witness, c);
             known = {pole.u, value, std::max(pole.unresolved, narrow)};
             if (pole.diverges && (far || !is_far_out(evaluator_.domain(), pole.u)) && divergence_.empty())
-                divergence_ = place_text(evaluator_.domain(), pole.u);
+                divergence_ = limit_text(evaluator_.domain(), pole.u);
             note_slow(pole.slow);
             evaluations_ += raw.evaluations();
         }
@@ -189,7 +189,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         if (where && worst > tolerance) {
             std::snprintf(text.data(), text.size(),
                           "a peak at %s, seen but hardly sampled, may hold %.2g or more of the integral",
-                          place_text(evaluator_.domain(), where->u).substr(5).c_str(), worst);
+                          place_text(evaluator_.domain(), where->u).c_str(), worst);
             tally.warnings.emplace_back(text.data());
             least[c] = std::max(least[c], worst);
         }
@@ -198,11 +198,11 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         const double unresolved = std::max({examined_[c].unresolved, at_ends, imprecise});
         if (unresolved > tolerance) {
             const std::string what =
-                unresolved == at_ends     ? "lies closer to an end or a pole than doubles can tell"
-                : unresolved == imprecise ? "depends on digits that the integrand loses by cancellation"
-                                          : "lies closer to the peak or pole at " +
-                                                place_text(evaluator_.domain(), examined_[c].u).substr(5) +
-                                                " than doubles can tell";
+                unresolved == at_ends ? "lies closer to an end or a pole than doubles can tell"
+                : unresolved == imprecise
+                    ? "depends on digits that the integrand loses by cancellation"
+                    : "lies closer to the peak or pole at " +
+                          place_text(evaluator_.domain(), examined_[c].u) + " than doubles can tell";
             std::snprintf(text.data(), text.size(), "about %.2g of the integral %s", unresolved,
                           what.c_str());
             tally.warnings.emplace_back(text.data());
@@ -214,7 +214,7 @@ void Evidence::judge(const UnitDensity* density, const StepRequest& request, Tal
         if (at && missed > tolerance) {
             std::snprintf(text.data(), text.size(),
                           "about %.2g of the integral lies closer to %s than the points reach", missed,
-                          place_text(evaluator_.domain(), at->shells.back().u).substr(5).c_str());
+                          place_text(evaluator_.domain(), at->shells.back().u).c_str());
             tally.warnings.emplace_back(text.data());
         }
     }

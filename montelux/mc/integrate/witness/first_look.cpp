@@ -4,6 +4,8 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <cstdio>
+#include <functional>
 #include <iterator>
 #include <limits>
 #include <numeric>
@@ -32,6 +34,21 @@ constexpr double same_root = 0.05;       // of the distance between two
 constexpr double least_followed = 1e-4;  // of a ridge's mass
 constexpr double same_branch = 0.125;    // of the cube's width: of a ridge that leads to two ends
 constexpr int most_climbed = 8;          // variables in which peaks are climbed and measured
+
+std::string number_text(double x) {
+    std::array<char, 32> text;
+    std::snprintf(text.data(), text.size(), "%.6g", x);
+    return text.data();
+}
+
+// Of n variables "(a, b)", or "a" of one.
+std::string tuple_text(int n, const std::function<std::string(int)>& part) {
+    if (n == 1) return part(0);
+    constexpr int most = 8;
+    std::string text;
+    for (int d = 0; d < std::min(most, n); ++d) text += (d > 0 ? ", " : "(") + part(d);
+    return text + (n > most ? ", ...)" : ")");
+}
 
 class Look {
   public:
@@ -230,7 +247,7 @@ class Look {
         std::array<double, 1> volume{1};
         domain.map(u, x, volume);
         if (domain.ranges().empty() && std::ranges::none_of(path.side, [](double side) { return side == 0; }))
-            return place_text(domain, path.at(ladder.back()));
+            return limit_text(domain, path.at(ladder.back()));
         std::string place;
         for (std::size_t d = 0; d < n_; ++d) {
             if (path.side[d] == 0) continue;
@@ -238,10 +255,10 @@ class Look {
             if (!domain.ranges().empty() && path.anchors[d].u == 0) to = domain.ranges()[d].lower;
             if (!domain.ranges().empty() && path.anchors[d].u == 1) to = domain.ranges()[d].upper;
             if (std::abs(to) < 1e-15) to = 0; // of the centre of a symmetric range
-            std::array<char, 64> text;
-            std::snprintf(text.data(), text.size(), "%s%s -> %.6g", place.empty() ? "" : ", ",
-                          n_ == 1 ? "x" : ("x" + std::to_string(d + 1)).c_str(), to);
-            place += text.data();
+            place +=
+                (place.empty() ? "" : ", ") +
+                (domain.ranges().empty() ? "x" + std::to_string(d + 1) : domain.name(static_cast<int>(d))) +
+                " -> " + number_text(to);
         }
         return domain.ranges().empty() ? place + " (variables of the unit cube)" : place;
     }
@@ -443,7 +460,7 @@ class Look {
             if (ridge.beyond > 0 && look_.witnesses.back().is_part)
                 masses_.add_unresolved(ridge.tops.back(), ridge.beyond);
             if (ridge.diverges && look_.divergence.empty())
-                look_.divergence = place_text(raw_.evaluator().domain(), ridge.tops.back().u);
+                look_.divergence = limit_text(raw_.evaluator().domain(), ridge.tops.back().u);
         }
     }
 
@@ -506,16 +523,14 @@ std::string place_text(const Domain& domain, std::span<const double> at) {
     constexpr double rounding = 1e-12; // beside the largest coordinate
     double largest = 0;
     for (int d = 0; d < domain.dimensions(); ++d) largest = std::max(largest, std::abs(x.view()(0, d)));
-    std::string text = domain.dimensions() > 1 ? "(" : "";
-    constexpr int most = 8;
-    for (int d = 0; d < std::min(most, domain.dimensions()); ++d) {
-        std::array<char, 32> number;
-        std::snprintf(number.data(), number.size(), "%s%.6g", d > 0 ? ", " : "",
-                      std::abs(x.view()(0, d)) < rounding * largest ? 0 : x.view()(0, d));
-        text += number.data();
-    }
-    if (domain.dimensions() > most) text += ", ...";
-    return "x -> " + text + (domain.dimensions() > 1 ? ")" : "");
+    return tuple_text(domain.dimensions(), [&](int d) {
+        return number_text(std::abs(x.view()(0, d)) < rounding * largest ? 0 : x.view()(0, d));
+    });
+}
+
+std::string limit_text(const Domain& domain, std::span<const double> at) {
+    return tuple_text(domain.dimensions(), [&](int d) { return domain.name(d); }) + " -> " +
+           place_text(domain, at);
 }
 
 } // namespace montelux

@@ -48,7 +48,9 @@ struct LookSettings {
 // counts as a shell that grows, NaN as nothing.
 FirstLook first_look(const Evaluator& evaluator, const LookSettings& settings = {});
 
-// A point of the cube as "x -> (0.3, 0.7)", in the domain's coordinates.
+// A point of the cube as "(0.3, 0.7)", in the domain's coordinates.
 std::string place_text(const Domain& domain, std::span<const double> u);
+// The limit towards it as "(x1, x2) -> (0.3, 0.7)".
+std::string limit_text(const Domain& domain, std::span<const double> u);
 
 } // namespace montelux

@@ -55,6 +55,11 @@ TEST(FirstLook, FindsPeaksOfAnyWidthAtZeroAtEndsAndAtLandmarks) {
 
 TEST(FirstLook, TellsDivergenceAtEndsAndAtInfinity) {
     EXPECT_EQ(look_at([](double x) { return 1 / x; }, Domain::interval(0, 1)).divergence, "x -> 0");
+    EXPECT_EQ(look_at([](double x) { return 1 / x; }, Domain::interval(0, 1).named({"t"})).divergence,
+              "t -> 0");
+    const auto line = [](std::span<const double> x) { return 1 / x[1]; };
+    EXPECT_EQ(look_at(line, Domain::unit_cube(2)).divergence, "x2 -> 0");
+    EXPECT_EQ(look_at(line, Domain::unit_cube(2).named({"x", "y"})).divergence, "y -> 0");
     // Far out x^4 overflows, and its quotients are zero or no numbers.
     EXPECT_EQ(look_at([](double x) { return x * x * x / (1 + x * x * x * x); }, Domain::interval(0, infinity))
                   .divergence,
@@ -118,7 +123,7 @@ TEST(FirstLook, FindsPeaksAtLandmarksOfShapes) {
     EXPECT_EQ(look_at([](std::span<const double> x) { return 1 / (1 - x[2]); }, Domain::sphere({0, 0, 0}),
                       {{0, 0, 1}})
                   .divergence,
-              "x -> (0, 0, 1)");
+              "(x1, x2, x3) -> (0, 0, 1)");
 }
 
 // The search for the nearest point costs no more where a map has many variables.
