@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "montelux/render/sample_record.h"
+#include "montelux/scene/material/make_bsdf.h"
 
 namespace montelux::testing {
 namespace {
