@@ -66,7 +66,7 @@ void DensityCheck::warn(Tally& tally) const {
     if (!(unseen_ > 0)) return;
     char text[128];
     std::snprintf(text, sizeof text,
-                  "about %.2g %% of the integral lies where the trained density hardly samples",
+                  "about %.3g %% of the integral lies where the trained density hardly samples",
                   100 * unseen_);
     tally.warnings.emplace_back(text);
 }

@@ -84,6 +84,10 @@ void DensityTrainer::start(SamplePoints&& points) {
     for (int c = 0; c < points.g.components(); ++c)
         for (double v : std::as_const(points.g).component(c))
             scale_[static_cast<std::size_t>(c)] += std::abs(v) / static_cast<double>(points.g.count());
+    // Known peaks may be all that is not zero.
+    for (std::size_t c = 0; problem_.look && c < scale_.size(); ++c)
+        for (const Witness& peak : problem_.look->peaks)
+            scale_[c] = std::max(scale_[c], std::abs(peak.value[c]) * peak.volume);
     std::vector<double> h = steering(points.g);
     double sum = 0, squares = 0;
     nonzero_ = 0;
