@@ -39,9 +39,9 @@ constexpr std::uint64_t patience = 60000; // evaluations of sampling before cuba
 constexpr double second_share = 0.2;      // and the share of sampling's evaluations that it then gets
 // A localised result is compared with sampling at a multiple of the target, within these relative errors.
 constexpr double finest_comparison = 1e-5, coarsest_comparison = 0.03;
-constexpr double comparable = 1.5;  // largest ratio of sampling's error to cubature's when both are compared
-constexpr double disagreeing = 2.5; // standard errors; a false alarm costs evaluations only
-constexpr double surprising_growth = 4; // growth of the error that makes a new problem
+constexpr double comparable = 1.5; // largest ratio of sampling's error to cubature's when both are compared
+constexpr double agreeing = 1, disagreeing = 2.5; // joint standard errors; in between sampling goes on
+constexpr double surprising_growth = 4;           // growth of the error that makes a new problem
 
 // What Adaptive needs for a relative error, roughly, as measured on Genz's families in 5 and 8 dimensions
 // (docs/integration.md): 10,000 evaluations for 1e-3, 35,000 for 1e-4.
@@ -198,7 +198,7 @@ class AutoEstimator final : public Estimator {
 
     enum class Agreement : std::uint8_t { unknown, agree, disagree };
     // Whether the values of both methods agree; unknown while sampling's error exceeds the request's targets and
-    // a multiple of cubature's.
+    // a multiple of cubature's, or tells too little.
     Agreement agreement(const StepRequest& request) const {
         const Tally rule = cubature_->tally(), sampled = sampling_->tally();
         const std::shared_ptr<const UnitDensity> density = sampling_->sampled_density();
@@ -212,10 +212,12 @@ class AutoEstimator final : public Estimator {
             if (!(error <=
                   std::max(request.tolerance(c, rule.value[c]), comparable * rule.standard_error[c])))
                 return Agreement::unknown;
-            agree = agree && std::abs(rule.value[c] - sampled.value[c]) <=
-                                 disagreeing * std::hypot(error, rule.standard_error[c]);
+            const double joint = std::hypot(error, rule.standard_error[c]),
+                         difference = std::abs(rule.value[c] - sampled.value[c]);
+            if (difference > disagreeing * joint) return Agreement::disagree;
+            agree = agree && difference <= agreeing * joint;
         }
-        return agree ? Agreement::agree : Agreement::disagree;
+        return agree ? Agreement::agree : Agreement::unknown;
     }
 
     // A peak too narrow for the random check is compared with a rough result of sampling, which searches for

@@ -66,6 +66,7 @@ struct CheckedPart {
     std::vector<CubatureWitness> surprises, hints;
     CovarianceMoments residual;
     std::vector<double> block_sums; // blocks x components
+    std::vector<double> missed;
     std::vector<double> lowest, highest;
     std::vector<std::size_t> regions;
     std::vector<double> differences; // of each, components side by side
@@ -74,6 +75,7 @@ struct CheckedPart {
     CheckedPart() = default;
     CheckedPart(int components, bool full)
         : residual(components, full), block_sums(blocks * static_cast<std::size_t>(components)),
+          missed(static_cast<std::size_t>(components)),
           lowest(static_cast<std::size_t>(components), std::numeric_limits<double>::infinity()),
           highest(static_cast<std::size_t>(components), -std::numeric_limits<double>::infinity()) {}
 
@@ -85,6 +87,7 @@ struct CheckedPart {
         differences.insert(differences.end(), later.differences.begin(), later.differences.end());
         for (std::size_t i = 0; i < block_sums.size(); ++i) block_sums[i] += later.block_sums[i];
         for (std::size_t c = 0; c < lowest.size(); ++c) {
+            missed[c] += later.missed[c];
             lowest[c] = std::min(lowest[c], later.lowest[c]);
             highest[c] = std::max(highest[c], later.highest[c]);
         }
@@ -156,7 +159,9 @@ CheckedPart check_some(const Evaluator& evaluator, const CubatureRegions& region
                 sums[c] += s.weight * residual[c];
                 part.lowest[c] = std::min(part.lowest[c], value);
                 part.highest[c] = std::max(part.highest[c], value);
-                surprising = surprising || surprise(regions, s.region, c, value, tolerance[c]) > 0;
+                const double excess = surprise(regions, s.region, c, value, tolerance[c]);
+                surprising = surprising || excess > 0;
+                part.missed[c] += s.weight * excess;
                 const double seen =
                     std::max(std::abs(regions.lowest(s.region)[c]), std::abs(regions.highest(s.region)[c]));
                 if (std::abs(value) > std::max(far_beyond * seen, greatest)) {
@@ -221,6 +226,8 @@ std::optional<CubatureCheck> check_regions(const Evaluator& evaluator, const Cub
     for (double& d : check.differences) d /= static_cast<double>(count);
     check.lowest = std::move(all->lowest);
     check.highest = std::move(all->highest);
+    check.missed = std::move(all->missed);
+    for (double& missed : check.missed) missed /= static_cast<double>(count);
     check.non_finite = std::move(all->non_finite);
     const std::size_t m = check.lowest.size();
     for (std::size_t c = 0; c < m; ++c) {

@@ -28,6 +28,7 @@ struct CubatureCheck {
     // Of g - (mean of its region), over the points.
     CovarianceMoments residual;
     std::vector<double> difference;   // of the integral by these points and its value by the rules
+    std::vector<double> missed;       // of it, by surprises alone, each counted as positive
     std::vector<std::size_t> regions; // that have points
     std::vector<double> differences;  // of each, components side by side
     // Standard error of the difference, from the spread of its parts (scrambled Sobol' blocks): mostly too

@@ -19,6 +19,7 @@ namespace {
 
 constexpr double negligible_surprise = 0.02; // share of the tolerance
 constexpr double least_tolerance = 1e-7;     // share of the integral of the absolute value
+constexpr double most_missed = 0.5;          // share of the tolerance that surprises may hold
 constexpr double suspicion = 2.5;            // standard errors beyond which the difference counts as an error
 constexpr double significant_errors = 5;     // standard errors between rules and points
 constexpr std::uint64_t most_rounds = 12;
@@ -84,7 +85,7 @@ bool CubatureVerification::verified(std::span<const double> value) const {
     if (points_ == 0) return true;
     if (checked_value_.empty() || !witnesses_.empty()) return false;
     if (!warning_.empty()) return true; // no further check would help
-    if (disagrees_ || doubtful_ || !enough_points_) return false;
+    if (disagrees_ || doubtful_ || misses_ || !enough_points_) return false;
     for (std::size_t c = 0; c < value.size(); ++c)
         if (!(std::abs(value[c] - checked_value_[c]) <= checked_error_[c])) return false;
     return true;
@@ -145,6 +146,7 @@ std::uint64_t CubatureVerification::points(const CubatureRegions& regions, std::
                     wanted, static_cast<std::uint64_t>(std::min(
                                 points_per_target / target, static_cast<double>(most_of_jumps * points_))));
         }
+    if (surprised_) wanted = std::max(wanted, checked_points_);
     if (doubtful_) wanted = std::max(wanted, std::min(points_of_doubt * checked_points_, most_points));
     if (is_scattered()) {
         double needed = request.targeted() ? 0 : static_cast<double>(evaluations);
@@ -233,13 +235,14 @@ std::uint64_t CubatureVerification::run(CubatureRegions& regions, std::span<cons
     checked_value_.assign(value.begin(), value.end());
     checked_error_.assign(error.begin(), error.end());
     slack_.resize(lowest_.size(), 0.0);
-    doubtful_ = false;
+    doubtful_ = misses_ = false;
     for (std::size_t c = 0; c < lowest_.size(); ++c) {
         lowest_[c] = std::min(lowest_[c], check->lowest[c]);
         highest_[c] = std::max(highest_[c], check->highest[c]);
         const double difference = std::abs(check->difference[c]), noise = check->standard_error[c];
         const bool doubtful = difference > error[c] + suspicion * noise;
         doubtful_ = doubtful_ || (doubtful && points < most_points);
+        misses_ = misses_ || check->missed[c] > most_missed * tolerance_[c];
         surprised_ = surprised_ || doubtful || !check->surprises.empty();
         // Once wrong, rules claim no smaller error than the points' own.
         slack_[c] = surprised_ ? std::min(std::max(difference, noise), tolerance_[c] / 2) : 0;
@@ -466,6 +469,7 @@ void CubatureVerification::save(StateWriter& state) const {
     state.put(surprised_);
     state.put(disagrees_);
     state.put(doubtful_);
+    state.put(misses_);
     montelux::save(state, non_finite_);
     state.put(std::string_view(warning_));
 }
@@ -520,6 +524,7 @@ void CubatureVerification::load(StateReader& state, std::size_t regions) {
     if (!slack_.empty()) fits(slack_, m);
     disagrees_ = state.get<int>() != 0;
     doubtful_ = state.get<bool>();
+    misses_ = state.get<bool>();
     montelux::load(state, non_finite_);
     warning_ = state.get_text();
 }

@@ -140,6 +140,7 @@ class CubatureVerification {
     bool unsurprised_ = false;  // since before the last check
     bool disagrees_ = false;    // the mean of the points, in the last check,
     bool doubtful_ = false;     // or it may: more points decide
+    bool misses_ = false; // surprises of the last check held too much for a claim, and may not have been all
     std::string warning_;
 };
 
