@@ -9,6 +9,8 @@ from program import ProgramTest
 # Many peaks, few of which the first points see; a curved ridge; a thin ring.
 EGGBOX = "exp((2+cos(x/2)*cos(y/2))^5)"
 ROSENBROCK = "exp(-(1-x)^2-100*(y-x^2)^2)"
+BANANA = "exp(-x^2/200-0.5*(y+0.03*x^2-3)^2)"
+NARROW = "-300-0.5*((a-1.2345)^2/1e-8+(b+7.7)^2/1e-6+(c-33.3)^2/1e-4+(d-a)^2/1e-4)"
 RING = "exp(-(hypot(x,y)-0.7)^2/(2*0.005^2))"
 
 
@@ -22,10 +24,34 @@ class HardIntegrals(ProgramTest):
     def honest(self, truth, line):
         with self.subTest(line):
             outcome, result = self.result(line)
-            error = result["standard_error"]
+            of = "log_" if "log_value" in result else ""
+            error = result[f"{of}error" if of else "standard_error"]
             if outcome.code == 3 or result["warnings"] or error is None:  # nothing is claimed
                 return
-            self.assert_near(result["value"], truth, 4 * error, outcome)
+            self.assert_near(result[f"{of}value"], truth, 4 * error, outcome)
+
+    def test_surprises_of_the_last_check_are_not_all(self):
+        for seed in 2, 3, 6, 11, 12:
+            self.honest(
+                62.831853,
+                f"{BANANA} --over x,y=-inf:inf --method cubature --relative-error 1e-2 --evaluations 300k --seed {seed}",
+            )
+
+    def test_sampling_confirms_rules_that_see_a_part_of_a_posterior(self):
+        for seed, evaluations in (2, "300k"), (10, "1M"), (16, "300k"):
+            self.honest(
+                -321.652682,
+                f"--log {NARROW} --over a,b,c,d=-100:100 --relative-error 1e-3 --evaluations {evaluations} --seed {seed}",
+            )
+
+    def test_peak_at_numbers_of_a_vector(self):
+        peak = "exp(-((x-1e5)/300)^2-((y-2.5e5)/20)^2)"
+        for seed in 1, 2, 3:
+            outcome, result = self.result(
+                f"{peak} x*{peak} --over x,y=0:1e6 --relative-error 1e-2 --evaluations 300k --seed {seed}"
+            )
+            self.assertEqual(outcome.code, 0, outcome)
+            self.assert_near(result["value"][1], 1.884956e9, 4e7, outcome)
 
     def test_few_of_the_peaks_are_seen_at_first(self):
         methods = "auto", "cubature", "adaptive", "vegas"

@@ -32,7 +32,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 constexpr std::uint64_t default_evaluations = 1'000'000;
 // Layout of checkpoints, to be raised with each change of what a part of a run saves.
-constexpr std::uint64_t state_version = 3;
+constexpr std::uint64_t state_version = 4;
 constexpr std::uint64_t no_limit = ~std::uint64_t{0};
 constexpr std::uint64_t most_of_look = 2048;  // evaluations,
 constexpr std::uint64_t share_of_look = 16;   // and one over the largest share of the limit

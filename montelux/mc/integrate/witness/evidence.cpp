@@ -93,6 +93,7 @@ void Evidence::rescale(std::span<const double> exponents) {
     };
     rescale_all(look_.peaks);
     rescale_all(look_.witnesses);
+    rescale_all(look_.on_ridges);
     for (SlowShells& slow : look_.slow) rescale_all(slow.shells);
     for (std::size_t c = 0; c < examined_.size(); ++c) {
         examined_[c].size = rescaled(examined_[c].size, c);
@@ -107,7 +108,9 @@ void Evidence::examine(const Tally& tally, std::uint64_t most_evaluations) {
     const std::uint64_t cost = most_of_examination * static_cast<std::uint64_t>(evaluator_.dimensions() + 1);
     std::uint64_t left = most_evaluations;
     if (!divergence_.empty()) return;
-    for (const Witness& witness : largest_.witnesses())
+    std::vector<Witness> seen = largest_.witnesses();
+    seen.insert(seen.end(), look_.on_ridges.begin(), look_.on_ridges.end()); // they may be poles
+    for (const Witness& witness : seen)
         for (std::size_t c = 0; c < examined_.size(); ++c) {
             Examined& known = examined_[c];
             const double value = std::abs(witness.value[c]);
@@ -227,6 +230,7 @@ void Evidence::save(StateWriter& state) const {
     state.put(std::string_view(divergence_));
     save_all(state, look_.witnesses);
     save_all(state, look_.peaks);
+    save_all(state, look_.on_ridges);
     save_all(state, look_.slow);
     save_all(state, look_.noise);
     state.put(look_.found_by_chance);
@@ -247,6 +251,7 @@ void Evidence::load(StateReader& state) {
     look_ = {};
     load_all(state, look_.witnesses);
     load_all(state, look_.peaks);
+    load_all(state, look_.on_ridges);
     load_all(state, look_.slow);
     load_all(state, look_.noise);
     evaluator_.leave_out(look_.noise);

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "montelux/mc/integrate/infinity.h"
+#include "montelux/mc/integrate/witness/diagonal_ridges.h"
 #include "montelux/mc/integrate/witness/guide_zeros.h"
 #include "montelux/mc/integrate/witness/ladder_masses.h"
 #include "montelux/mc/integrate/witness/ladder_path.h"
@@ -70,7 +71,7 @@ class Look {
                 // Through a generic point, where no other variable is near a pole of its own; then through the
                 // greatest value, where masses along a line say nothing of the integral.
                 walk(paths_.along(d, paths_.generic_point(), true));
-                if (const Witness* top = best()) walk(paths_.along(d, Point(top->u)), false);
+                if (const Witness* top = best()) walk(paths_.along(d, Point(top->u)), *top);
             }
         }
         std::vector<std::size_t> all(look_.witnesses.size());
@@ -96,22 +97,33 @@ class Look {
         return paths;
     }
 
-    // Evaluates the ladders and keeps what they saw. `tests`: whether their masses fall.
-    void walk(std::vector<LadderPath> paths, bool tests = true) {
+    // Evaluates the ladders, keeps what they saw and tests whether their masses fall; not of those that lead through a point.
+    void walk(std::vector<LadderPath> paths, const std::optional<Witness>& through = {}) {
         std::vector<Point> points;
         std::vector<double> volumes;
         std::size_t walked = 0;
         for (; walked < paths.size() && affordable(points.size() + ladder.size()); ++walked)
             place(paths[walked], points, volumes);
         auto rows = raw_(points);
-        for (std::size_t i = 0; i < points.size(); ++i) masses_.see(rows[i], volumes[i]);
+        if (affordable(0))
+            measure_diagonals(raw_, paths, points, rows, volumes,
+                              settings_.most_evaluations - raw_.evaluations());
+        for (std::size_t i = 0; i < points.size(); ++i) {
+            const LadderPath& path = paths[i / ladder.size()];
+            volumes[i] = path.volume(path.exponent(i % ladder.size()), paths_.widths(path));
+            if (through && points[i] == through->u) volumes[i] = std::min(volumes[i], through->volume);
+            if (path.thickness < infinity &&
+                (look_.on_ridges.empty() || size(rows[i]) > size(look_.on_ridges[0].value)))
+                look_.on_ridges.assign(1, {points[i], rows[i], volumes[i]});
+            masses_.see(rows[i], volumes[i]);
+        }
         for (std::size_t p = 0; p < walked; ++p) {
             double noise = infinity;
             const auto along = std::span(rows).subspan(p * ladder.size(), ladder.size());
             for (std::size_t c = 0; c < components(); ++c) {
                 const double of_component = masses_.noise(paths[p], along, c);
                 noise = std::min(noise, of_component);
-                if (!tests || !look_.divergence.empty()) continue;
+                if (through || !look_.divergence.empty()) continue;
                 if (masses_.diverge(paths[p], along, c, of_component)) look_.divergence = place_of(paths[p]);
                 if (of_component == infinity) continue;
                 const auto [lower, upper] = paths[p].within(of_component);
@@ -135,16 +147,15 @@ class Look {
                 size(rows[i]) > outstanding * size(rows[i - i % ladder.size()]))
                 deep_.push_back(look_.witnesses.size() - 1);
         refine(paths, walked, rows, volumes);
-        if (!tests || !look_.divergence.empty()) return;
+        if (through || !look_.divergence.empty()) return;
         for (std::size_t p = 0; p < walked; ++p) note_slow(paths[p], rows, p * ladder.size());
     }
 
     // Adds the points of a ladder, and the volumes of their shells.
     void place(const LadderPath& path, std::vector<Point>& points, std::vector<double>& volumes) const {
-        const double finest = std::min(path.finest(), ladder.back());
-        for (double k : ladder) {
-            points.push_back(path.at(k * finest / ladder.back()));
-            volumes.push_back(path.volume(k * finest / ladder.back(), paths_.widths(path)));
+        for (std::size_t shell = 0; shell < ladder.size(); ++shell) {
+            points.push_back(path.at(path.exponent(shell)));
+            volumes.push_back(path.volume(path.exponent(shell), paths_.widths(path)));
         }
     }
 
@@ -163,9 +174,8 @@ class Look {
                 return other.place == slow.place && is_same_side(path, other);
             }))
             return;
-        const double finest = std::min(path.finest(), ladder.back()) / ladder.back();
         for (std::size_t i = 0; i < ladder.size(); ++i) {
-            const double k = ladder[i] * finest;
+            const double k = path.exponent(i);
             slow.exponents.push_back(k);
             slow.shells.push_back(
                 {path.at(k), rows[first + i], path.volume(k, std::vector<double>(n_, 1.0))});

@@ -18,6 +18,8 @@ struct FirstLook {
     // Tops that stand far above the others. Along each variable |g| stays above a half of its value there within
     // `volume`, a box; where variables are correlated the box is smaller than the peak.
     std::vector<Witness> peaks;
+    // The greatest value on diagonals that lie on ridges, or on surfaces of poles; none if there are none.
+    std::vector<Witness> on_ridges;
     // Part of the integral of |g_c| that lies closer to an end or a pole of one variable, or farther out, than doubles
     // resolve; one for each component, or none.
     std::vector<double> unresolved;

@@ -15,8 +15,8 @@ namespace {
 
 constexpr std::size_t batch = 256;
 constexpr int most_dimensions_weighed = 64;
-constexpr double imprecise = 0.01; // relative error of values that lost their digits
-constexpr double finest = 54;      // exponent of the smallest distance from an anchor
+constexpr double imprecise = 0.01;  // relative error of values that lost their digits
+constexpr double finest_scale = 54; // exponent of the smallest distance from an anchor
 constexpr double uniform_share_of_scales = 1.0 / 3;
 constexpr std::uint64_t stream = 0x726f756e64;
 
@@ -26,7 +26,7 @@ class AllScales {
   public:
     explicit AllScales(std::span<const Anchor> anchors) {
         for (const Anchor& a : anchors) {
-            const double least = std::exp2(-std::min(finest, a.finest));
+            const double least = std::exp2(-std::min(finest_scale, a.finest));
             for (const double sign : {1.0, -1.0})
                 sides_.push_back({a.u, a.u == 0 ? 1 : a.u == 1 ? -1 : sign, least});
         }
@@ -66,20 +66,21 @@ class Corners {
         double all = 0;
         for (int d = 0; d < n_; ++d) all -= std::log(random(i, d));
         for (int d = 0; d < n_; ++d) {
-            const double distance = 0.5 * std::exp2(-finest * sum * -std::log(random(i, d)) / all);
+            const double distance = 0.5 * std::exp2(-finest_scale * sum * -std::log(random(i, d)) / all);
             u(i, d) = random(i, n_ + d) < 0.5 ? distance : std::min(1 - distance, 1 - 0x1p-53);
         }
     }
     double pdf(const PointBuffer& u, std::size_t i) const {
-        double sum = 0, logarithm = std::lgamma(n_) - std::log(finest) - n_ * std::log(2 * std::numbers::ln2);
+        double sum = 0,
+               logarithm = std::lgamma(n_) - std::log(finest_scale) - n_ * std::log(2 * std::numbers::ln2);
         for (int d = 0; d < n_; ++d) {
             const double distance = std::min(u.view()(i, d), 1 - u.view()(i, d));
             sum -= std::log2(2 * distance);
             logarithm -= std::log(distance);
         }
-        return sum > finest ? 0
-               : n_ == 1    ? std::exp(logarithm)
-                            : std::exp(logarithm - (n_ - 1) * std::log(sum));
+        return sum > finest_scale ? 0
+               : n_ == 1          ? std::exp(logarithm)
+                                  : std::exp(logarithm - (n_ - 1) * std::log(sum));
     }
 
   private:

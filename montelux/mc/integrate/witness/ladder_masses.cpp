@@ -19,10 +19,6 @@ constexpr double least_left = 0.01;   // of the outer ones: from there on it cou
 constexpr double growing = 2;         // factor of |g| from one shell of a ladder to the next, towards a pole
 constexpr double same_pole = 0x1p-20; // of the cube's width: digits are lost closer to it
 
-double exponent_of(const LadderPath& path, std::size_t shell) {
-    return ladder[shell] * std::min(path.finest(), ladder.back()) / ladder.back();
-}
-
 // Whether two paths lead to one side of one pole.
 bool is_same(const LadderPath& a, const LadderPath& b) {
     for (std::size_t d = 0; d < a.side.size(); ++d)
@@ -129,9 +125,9 @@ LadderMasses::Drop LadderMasses::drop_by_rounding(const LadderPath& path, Rows r
 
 // Mass beyond a drop after a shell, in units of the volume at exponent 0.
 double LadderMasses::mass_of_rounding(const LadderPath& path, std::size_t c, std::size_t shell) {
-    const double from = exponent_of(path, shell), to = shell + 1 < ladder.size()
-                                                           ? exponent_of(path, shell + 1)
-                                                           : std::min(beyond_digits, path.finest());
+    const double from = path.exponent(shell), to = shell + 1 < ladder.size()
+                                                       ? path.exponent(shell + 1)
+                                                       : std::min(beyond_digits, path.finest());
     const double mass = mass_of_lost_digits(values_along(path, c), from, to, path.codimension(), path.end());
     if (mass < infinity || path.codimension() == 1) return mass;
     LadderPath other = path; // a diagonal may be a ridge
@@ -166,7 +162,7 @@ bool LadderMasses::faces_diverge(const LadderPath& path, std::size_t c, std::siz
 // at infinity by shells farther out, else what the innermost ones leave if they fall by a power.
 double LadderMasses::mass_beyond_shells(const LadderPath& path, Rows rows, std::size_t c) {
     if (path.finest() > finest_inside || !falls_less_than(least_left, path, rows, c)) return 0;
-    const double from = exponent_of(path, 3), to = exponent_of(path, 5);
+    const double from = path.exponent(3), to = path.exponent(5);
     const double outer = std::abs(rows[3][c]) * std::exp2(-from),
                  inner = std::abs(rows[5][c]) * std::exp2(-to);
     if (goes_to_infinity(path, raw_.evaluator().domain())) return inner * mass_farther_out(path, c, to);
@@ -184,8 +180,7 @@ std::size_t LadderMasses::last_shell(Rows rows, std::size_t c) {
 double LadderMasses::mass(const LadderPath& path, Rows rows, std::size_t c, std::size_t before) {
     const std::size_t last = last_shell(rows, c), i = std::max(last, before) - before;
     const double g = std::abs(rows[i][c]);
-    return std::isnan(g) || rows[last][c] == 0 ? 0
-                                               : g * std::exp2(-path.codimension() * exponent_of(path, i));
+    return std::isnan(g) || rows[last][c] == 0 ? 0 : g * std::exp2(-path.codimension() * path.exponent(i));
 }
 
 // Whether the larger mass of the last two shells is at least a part of that of the two before.
@@ -206,7 +201,7 @@ bool LadderMasses::is_negligible(const LadderPath& path, Rows rows, std::size_t 
 }
 
 bool LadderMasses::is_negligible(const LadderPath& path, Rows rows, std::size_t c, std::size_t shell) const {
-    const double mass = std::abs(rows[shell][c]) * path.volume(exponent_of(path, shell), paths_.widths(path));
+    const double mass = std::abs(rows[shell][c]) * path.volume(path.exponent(shell), paths_.widths(path));
     return finest_at_origin * mass < std::numeric_limits<double>::epsilon() * most_[c];
 }
 

@@ -52,7 +52,7 @@ double LadderPath::end() const {
 }
 
 double LadderPath::volume(double exponent, const std::vector<double>& across) const {
-    double product = 1;
+    double product = std::min(1.0, thickness * std::exp2(exponent));
     for (std::size_t d = 0; d < side.size(); ++d)
         product *= side[d] != 0 ? reach[d] * std::exp2(-rate(d) * exponent) : across[d];
     return product;
@@ -233,6 +233,7 @@ std::vector<LadderPath> LadderPaths::joint() {
             // The first ones along diagonals, where ridges are; the others in directions of their own.
             path.reach.push_back(reach(anchor.u, side) * (place ? 1 : 0.5 + 0.5 * random()));
         }
+        path.is_diagonal = place;
         if (place) {
             LadderPath opposite = path;
             bool inside = false;

@@ -1,6 +1,7 @@
 // Ladders of points by which a first look walks towards the places where peaks and poles usually lie.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -27,15 +28,22 @@ struct LadderPath {
     std::vector<double> reach;
     std::vector<int> rates = {};  // empty: 1
     double precise_to = infinity; // exponent beyond which values are noise
+    bool is_diagonal = false;     // the same part of the way to the end in each variable
+    double thickness = infinity;  // of a ridge on which a diagonal lies, in units of the reach
 
     int rate(std::size_t d) const { return side[d] == 0 ? 0 : rates.empty() ? 1 : rates[d]; }
     // Shells at k have a volume of 2^(-k codimension).
     int codimension() const;
     double finest() const;
+    // Exponent of a shell of its ladder.
+    double exponent(std::size_t shell) const {
+        return ladder[shell] * std::min(finest(), ladder.back()) / ladder.back();
+    }
     // Exponent of the distance between zero and the range's end where that is small, else infinity. Functions that grow towards
     // zero are constant in shells beyond it.
     double end() const;
-    // Volume of the shell around the anchor; `across`: widths in the variables that do not move.
+    // Volume of the shell around the anchor; `across`: widths in the variables that do not move. On a ridge
+    // only a layer of the shell.
     double volume(double exponent, const std::vector<double>& across) const;
     std::vector<double> at(double exponent) const;
     // The box of what is closer to the anchor, on this side; all of the variables that do not move.
