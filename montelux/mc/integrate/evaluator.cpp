@@ -12,6 +12,7 @@ namespace montelux {
 void NonFiniteCount::merge(const NonFiniteCount& later) {
     if (count == 0) first_point = later.first_point;
     count += later.count;
+    vanished += later.vanished;
 }
 
 Evaluator::Evaluator(Integrand integrand, Domain domain, NonFinitePolicy policy)
@@ -38,6 +39,11 @@ void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& n
             if (std::isfinite(values(i, c))) continue;
             std::vector<double> point(static_cast<std::size_t>(x.dimensions()));
             x.gather(i, point.data());
+            if (std::isnan(values(i, c)) && vanishes_before(point, c)) {
+                ++non_finite.vanished;
+                values(i, c) = 0;
+                continue;
+            }
             if (policy_ == NonFinitePolicy::throw_error) {
                 std::ostringstream what;
                 what.precision(17);
@@ -57,6 +63,34 @@ void Evaluator::screen(const PointBatch& x, ValueBatch values, NonFiniteCount& n
             for (int other = 0; other < values.components(); ++other) values(i, other) = 0;
         }
     }
+}
+
+bool Evaluator::vanishes_before(std::span<const double> x, int component) const {
+    constexpr double falls = 0x1p-64;
+    const std::span<const Range> ranges = domain_.ranges();
+    std::vector<double> from(x.begin(), x.end()); // coordinates of finite ranges do not move
+    double farthest = 0;
+    for (std::size_t d = 0; d < ranges.size(); ++d) {
+        const bool lower = std::isfinite(ranges[d].lower), upper = std::isfinite(ranges[d].upper);
+        if (lower && upper) continue;
+        from[d] = lower ? ranges[d].lower : upper ? ranges[d].upper : 0;
+        farthest = std::max(farthest, std::abs(x[d] - from[d]));
+    }
+    const int halvings = farthest > 1 ? std::ilogb(farthest) + 8 : 0;
+    if (halvings == 0 || !std::isfinite(farthest)) return false;
+    PointBuffer way(static_cast<std::size_t>(halvings), static_cast<int>(x.size()));
+    for (int k = 0; k < halvings; ++k)
+        for (std::size_t d = 0; d < x.size(); ++d)
+            way(static_cast<std::size_t>(k), static_cast<int>(d)) =
+                from[d] + std::ldexp(x[d] - from[d], -(k + 1));
+    ValueBuffer f(way.count(), components());
+    integrand_(way, f);
+    for (std::size_t k = 0; k + 1 < way.count(); ++k) {
+        const double last = std::abs(f(k, component));
+        if (std::isnan(last)) continue;
+        return last == 0 || last < falls * std::abs(f(k + 1, component));
+    }
+    return false;
 }
 
 void Evaluator::scale(ValueBatch g, const double* volume) const {

@@ -23,6 +23,8 @@ enum class NonFinitePolicy : std::uint8_t {
 struct NonFiniteCount {
     std::uint64_t count = 0;
     std::vector<double> first_point; // empty while the count is zero
+    // NaN where the integrand had vanished on the way out, as x^4 exp(x) / (exp(x) - 1)^2 has; not in `count`.
+    std::uint64_t vanished = 0;
 
     // In the order of the samples.
     void merge(const NonFiniteCount& later);
@@ -54,7 +56,7 @@ class Evaluator {
     // Boxes in which values count as zero from now on.
     void leave_out(std::vector<NoiseBox> noise) { noise_ = std::move(noise); }
 
-    // g at points u; values that are not finite become zero and are counted, and the indices of their points
+    // g at points u; values that are not finite become zero and are counted (see NonFiniteCount), and the indices of their points
     // added to `where`, if that is given. Scratch memory is the thread's.
     void operator()(const PointBatch& u, ValueBatch g, NonFiniteCount& non_finite,
                     std::vector<std::size_t>* where = nullptr) const;
@@ -70,6 +72,9 @@ class Evaluator {
   private:
     // Multiplies by the change of volume: the constant one, or else `volume` of each point.
     void scale(ValueBatch g, const double* volume) const;
+    // Whether a component vanishes on the way from the origin, or a finite end, to a point of infinite ranges where it is NaN:
+    // the last value that is none is zero, or falls from half of its distance by 2^-64 or more, as no power does.
+    bool vanishes_before(std::span<const double> x, int component) const;
     // Sets values in the boxes of noise to zero.
     void silence(const PointBatch& u, ValueBatch g) const;
     void screen(const PointBatch& x, ValueBatch values, NonFiniteCount& non_finite,

@@ -46,16 +46,6 @@ constexpr double zero_within = 3; // errors within which a value counts as zero
 // work per evaluation.
 constexpr double first_calls = 1e-4, work_per_evaluation = 3e-7;
 
-std::string point_text(const std::vector<double>& point) {
-    std::ostringstream text;
-    text.precision(17);
-    text << "(";
-    constexpr std::size_t most = 8;
-    for (std::size_t d = 0; d < std::min(most, point.size()); ++d) text << (d ? ", " : "") << point[d];
-    text << (point.size() > most ? ", ...)" : ")");
-    return text.str();
-}
-
 // log2 |dx/du| at a point inside the domain; 0 where it is zero or infinite there.
 double volume_exponent(const Domain& domain) {
     PointBuffer u(1, domain.uniforms()), x(1, domain.dimensions());
@@ -473,6 +463,10 @@ class Run {
             r.warnings.push_back(std::to_string(r.non_finite) + " of " + std::to_string(r.evaluations) +
                                  " values of the integrand were not finite and were left out, the first at " +
                                  point_text(r.first_non_finite_point));
+        if (tally.non_finite.vanished > 0)
+            r.notes.push_back(
+                "values far out, where the integrand has vanished, are no numbers and count as zero (" +
+                std::to_string(tally.non_finite.vanished) + " of " + std::to_string(r.evaluations) + ")");
         if (stop == StopReason::diverges) {
             r.warnings = {"the integral diverges, or converges too slowly to tell: " +
                           evidence_.divergence()};

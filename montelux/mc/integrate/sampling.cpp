@@ -113,11 +113,13 @@ void load(StateReader& state, CovarianceMoments& moments) {
 void save(StateWriter& state, const NonFiniteCount& count) {
     state.put(count.count);
     state.put(count.first_point);
+    state.put(count.vanished);
 }
 
 void load(StateReader& state, NonFiniteCount& count) {
     count.count = state.get_word();
     count.first_point = state.get_doubles();
+    count.vanished = state.get_word();
 }
 
 std::uint64_t next_step_size(std::uint64_t done, std::uint64_t first, std::uint64_t limit) {

@@ -4,11 +4,15 @@
 #include <cmath>
 #include <gtest/gtest.h>
 #include <limits>
+#include <numbers>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <sys/resource.h>
+#include <tuple>
 #include <vector>
+
+#include "montelux/mc/integrate/adaptive/adaptive.h"
 
 namespace montelux {
 namespace {
@@ -99,6 +103,48 @@ TEST(IntegrateNonFinite, OneBadComponentTakesItsPointOutOfAll) {
     EXPECT_EQ(2 * r.value[0], r.value[1]);
     EXPECT_EQ(4 * r.value[0], r.value[2]);
     EXPECT_NEAR(r.value[0], 0.5, 5.5 * 0.005);
+}
+// Overflow far out, where the integrand has underflowed or almost: in one variable and two, from a finite end and from none.
+TEST(IntegrateNonFinite, CountsAsZeroWhereTheIntegrandHasVanishedOnTheWayOut) {
+    const double inf = std::numeric_limits<double>::infinity();
+    const auto debye = [](double x) { return std::pow(x, 4) * std::exp(x) / std::pow(std::exp(x) - 1, 2); };
+    const auto logistic = [](double x) { return std::exp(-x) / std::pow(1 + std::exp(-x), 2); };
+    const auto gumbel = [](double x) { return std::exp(x) * std::exp(-std::exp(x)); };
+    const auto lognormal = [](std::span<const double> x) {
+        return std::exp(x[0] + 2 * x[1]) * std::exp(-0.5 * (x[0] * x[0] + x[1] * x[1]));
+    };
+    const double exact = 2 * std::numbers::pi * std::exp(2.5);
+    for (const auto& [f, domain, value] :
+         {std::tuple(Integrand(debye), Domain::interval(0, inf), 4 * std::pow(std::numbers::pi, 4) / 15),
+          std::tuple(Integrand(logistic), Domain::interval(-inf, inf), 1.0),
+          std::tuple(Integrand(gumbel), Domain::interval(-inf, inf), 1.0),
+          std::tuple(Integrand(lognormal), Domain({{-inf, inf}, {-inf, inf}}), exact)})
+        for (const Method& method : {Method(), Method(Adaptive())}) {
+            const IntegrationResult r = integrate(f, domain, method, {.relative_error = 1e-3});
+            EXPECT_TRUE(r.converged()) << r;
+            EXPECT_EQ(r.non_finite, 0u);
+            EXPECT_LT(std::abs(r.estimate().z_score(value)), 5.5) << r;
+        }
+    const IntegrationResult noted =
+        integrate(debye, Domain::interval(0, inf), basic, {.evaluations = 100'000});
+    ASSERT_EQ(noted.notes.size(), 1u);
+    EXPECT_TRUE(
+        noted.notes[0].starts_with("values far out, where the integrand has vanished, are no numbers"));
+}
+// NaN that more than nothing may lie behind: a constant, a power, a domain that ends; infinity; a finite range.
+TEST(IntegrateNonFinite, IsAWarningWhereTheIntegrandHasNotVanished) {
+    const double inf = std::numeric_limits<double>::infinity();
+    for (const Integrand& f :
+         {Integrand([](double x) { return std::exp(x) / (1 + std::exp(x)); }),
+          Integrand([](double x) { return std::exp(x) / (1 + std::exp(x)) / (1 + x * x); }),
+          Integrand([](double x) { return std::exp(-x * x) * std::log(5 - x); }),
+          Integrand([](double x) { return std::exp(x); })}) {
+        const IntegrationResult r = integrate(f, Domain::interval(0, inf), basic, {.evaluations = 100'000});
+        EXPECT_GT(r.non_finite, 0u);
+        EXPECT_FALSE(r.warnings.empty());
+    }
+    const auto cut = [](double x) { return x > 1 ? std::numeric_limits<double>::quiet_NaN() : 0.0; };
+    EXPECT_GT(integrate(cut, Domain::interval(0, 4), basic, {.evaluations = 1000}).non_finite, 0u);
 }
 TEST(IntegrateNonFinite, ThrowingPolicyNamesThePoint) {
     auto f = [](double x) { return x > 0.5 ? std::numeric_limits<double>::infinity() : 1.0; };

@@ -133,7 +133,9 @@ void evaluate_some(const Evaluator& evaluator, const CubatureWork& work, std::sp
     for (std::size_t& i : not_finite) i += known;
     if (!work.may_shift)
         non_finite.merge(first_time);
-    else if (!not_finite.empty())
+    else
+        non_finite.vanished += first_time.vanished;
+    if (work.may_shift && !not_finite.empty())
         shift_off_singularities(evaluator, u, known, work, begin, values, not_finite, non_finite, shifted);
     if (work.nested_not_finite) not_finite.insert(not_finite.begin(), 0);
     std::ranges::sort(not_finite);
