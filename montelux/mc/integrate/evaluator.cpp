@@ -76,21 +76,24 @@ bool Evaluator::vanishes_before(std::span<const double> x, int component) const 
         from[d] = lower ? ranges[d].lower : upper ? ranges[d].upper : 0;
         farthest = std::max(farthest, std::abs(x[d] - from[d]));
     }
-    const int halvings = farthest > 1 ? std::ilogb(farthest) + 8 : 0;
-    if (halvings == 0 || !std::isfinite(farthest)) return false;
-    PointBuffer way(static_cast<std::size_t>(halvings), static_cast<int>(x.size()));
-    for (int k = 0; k < halvings; ++k)
+    if (!(farthest > 1) || !std::isfinite(farthest)) return false;
+    PointBuffer point(1, static_cast<int>(x.size()));
+    ValueBuffer f(1, components());
+    const auto size = [&](int halvings) {
         for (std::size_t d = 0; d < x.size(); ++d)
-            way(static_cast<std::size_t>(k), static_cast<int>(d)) =
-                from[d] + std::ldexp(x[d] - from[d], -(k + 1));
-    ValueBuffer f(way.count(), components());
-    integrand_(way, f);
-    for (std::size_t k = 0; k + 1 < way.count(); ++k) {
-        const double last = std::abs(f(k, component));
-        if (std::isnan(last)) continue;
-        return last == 0 || last < falls * std::abs(f(k + 1, component));
+            point(0, static_cast<int>(d)) = from[d] + std::ldexp(x[d] - from[d], -halvings);
+        integrand_(point, f);
+        return std::abs(std::as_const(f)(0, component));
+    };
+    int beyond = 0,
+        last = std::ilogb(farthest) + 8; // halvings: the last NaN, and the first value that is none
+    if (std::isnan(size(last))) return false;
+    while (last - beyond > 1) {
+        const int half = (beyond + last) / 2;
+        (std::isnan(size(half)) ? beyond : last) = half;
     }
-    return false;
+    const double value = size(last);
+    return value == 0 || value < falls * size(last + 1);
 }
 
 void Evaluator::scale(ValueBatch g, const double* volume) const {
