@@ -163,11 +163,14 @@ class Look {
     // same face or corner, at whose points densities are compared: the first may lie on a ridge.
     void note_slow(const LadderPath& path, const std::vector<std::vector<double>>& rows, std::size_t first) {
         SlowShells slow{std::vector<double>(n_, SlowShells::free), {}, {}};
+        bool inside = false;
         for (std::size_t d = 0; d < n_; ++d) {
             if (path.side[d] == 0) continue;
             slow.place[d] = path.anchors[d].u;
-            if (n_ > 1 && slow.place[d] != 0 && slow.place[d] != 1)
-                return; // the search for poles looks inside
+            if (n_ == 1 || slow.place[d] == 0 || slow.place[d] == 1) continue;
+            // Two diagonals lead to a place inside; in fewer variables the search for poles looks there.
+            if (path.codimension() < static_cast<int>(n_) || !path.is_diagonal) return;
+            inside = true;
         }
         if (look_.slow.size() == SlowShells::most ||
             std::ranges::any_of(look_.slow, [&](const SlowShells& other) {
@@ -177,8 +180,9 @@ class Look {
         for (std::size_t i = 0; i < ladder.size(); ++i) {
             const double k = path.exponent(i);
             slow.exponents.push_back(k);
-            slow.shells.push_back(
-                {path.at(k), rows[first + i], path.volume(k, std::vector<double>(n_, 1.0))});
+            slow.shells.push_back({path.at(k), rows[first + i],
+                                   path.volume(k, std::vector<double>(n_, 1.0)) *
+                                       std::exp2(inside ? static_cast<double>(n_ - 1) : 0)});
         }
         if (!any_slow(slow)) return;
         if (n_ > 1) {

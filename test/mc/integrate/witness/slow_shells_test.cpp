@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -100,6 +101,29 @@ TEST(SlowShells, ErrorsCoverWhatPointsDoNotReach) {
                 EXPECT_LT(std::abs(r.value[0] - f.exact), 4 * r.standard_error[0])
                     << f.name << " by " << name << " " << seed << ": " << to_string(r);
             }
+}
+
+// A pole inside of several variables, whose values are not yet far above the mean when the target is reached.
+TEST(SlowShells, PolesInsideEnterTheError) {
+    const auto pole = [](std::span<const double> x) { return 1 / std::hypot(x[0] - 0.5, x[1] - 0.5); };
+    const FirstLook look = first_look(Evaluator(Integrand(pole), Domain::unit_cube(2)), {.seed = 1});
+    ASSERT_EQ(look.slow.size(), 2u); // on both diagonals, each with two of the four quadrants
+    // 2 pi r lies closer than r.
+    for (std::size_t i = 1; i < look.slow[0].shells.size(); ++i) {
+        const double mass = look.slow[0].shells[i].value[0] * look.slow[0].shells[i].volume,
+                     before = look.slow[0].shells[i - 1].value[0] * look.slow[0].shells[i - 1].volume;
+        EXPECT_NEAR(std::log2(before / mass), look.slow[0].exponents[i] - look.slow[0].exponents[i - 1],
+                    0.01);
+    }
+    const std::vector<Unreached> missed = unreached(look.slow, 1, nullptr, 10'000);
+    EXPECT_GT(missed[0].mass, 0.5 * 2 * std::numbers::pi * 0.0056); // pi r^2 holds one point
+    EXPECT_LT(missed[0].mass, 4 * 2 * std::numbers::pi * 0.0056);
+    for (std::uint64_t seed = 0; seed < 12; ++seed) {
+        const IntegrationResult r =
+            integrate(pole, Domain::unit_cube(2), Method::named("quasi"),
+                      {.relative_error = 1e-2, .evaluations = 200'000}, {.seed = seed, .threads = 1});
+        EXPECT_LT(std::abs(r.value[0] - 3.5254943480781720), 4 * r.standard_error[0]) << seed << to_string(r);
+    }
 }
 
 } // namespace
