@@ -10,8 +10,8 @@ namespace {
 
 using Point = std::vector<double>;
 
-constexpr double far_more = 16; // than in other directions, or than beside a ridge
-constexpr int bisections = 6;   // of exponents up to 52
+constexpr double far_heavier = 16; // than in other directions, or than beside a ridge
+constexpr int most_bisections = 6; // of exponents up to 52
 
 struct Diagonal {
     std::size_t ladder, shell; // the heaviest one
@@ -22,7 +22,7 @@ struct Diagonal {
 };
 
 // Point whose distances from a place differ from the diagonal's.
-Point beside(const Point& on_diagonal, const LadderPath& path) {
+Point point_beside(const Point& on_diagonal, const LadderPath& path) {
     Point u = on_diagonal;
     for (std::size_t d = 0; d < u.size(); ++d)
         u[d] +=
@@ -57,14 +57,15 @@ void measure_diagonals(RawValues& raw, std::span<LadderPath> paths, std::span<co
             if (mass(i) > mass(heaviest)) heaviest = i;
         if (paths[p].is_diagonal)
             diagonals.push_back({p, heaviest - first, size(rows[heaviest]), mass(heaviest), points[heaviest],
-                                 beside(points[heaviest], paths[p])});
+                                 point_beside(points[heaviest], paths[p])});
         else
             others = std::max(others, mass(heaviest));
     }
-    std::erase_if(diagonals, [&](const Diagonal& d) { return !(others > 0 && d.mass > far_more * others); });
-    if ((bisections + 1) * diagonals.size() > most_evaluations) return;
+    std::erase_if(diagonals,
+                  [&](const Diagonal& d) { return !(others > 0 && d.mass > far_heavier * others); });
+    if ((most_bisections + 1) * diagonals.size() > most_evaluations) return;
 
-    for (int round = 0; round <= bisections; ++round) {
+    for (int round = 0; round <= most_bisections; ++round) {
         const auto exponent = [&](const Diagonal& d) {
             return round == 0 ? 0 : 0.5 * (d.inside + d.outside);
         };
@@ -80,7 +81,7 @@ void measure_diagonals(RawValues& raw, std::span<LadderPath> paths, std::span<co
         for (std::size_t i = 0; i < diagonals.size(); ++i) {
             Diagonal& d = diagonals[i];
             if (round > 0) (size(seen[i]) >= 0.5 * d.height ? d.inside : d.outside) = exponent(d);
-            if (round > 0 || far_more * size(seen[i]) < d.height) on_ridges.push_back(std::move(d));
+            if (round > 0 || far_heavier * size(seen[i]) < d.height) on_ridges.push_back(std::move(d));
         }
         diagonals = std::move(on_ridges);
     }
