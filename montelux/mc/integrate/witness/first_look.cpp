@@ -42,13 +42,20 @@ std::string number_text(double x) {
     return text.data();
 }
 
-// Of n variables "(a, b)", or "a" of one.
+// Tuple of n texts as "(a, b)", or "a" if there is one.
 std::string tuple_text(int n, const std::function<std::string(int)>& part) {
     if (n == 1) return part(0);
     constexpr int most = 8;
     std::string text;
     for (int d = 0; d < std::min(most, n); ++d) text += (d > 0 ? ", " : "(") + part(d);
     return text + (n > most ? ", ...)" : ")");
+}
+
+// Largest |value| of a row, before the sizes of components are known.
+double greatest(const std::vector<double>& row) {
+    double most = 0;
+    for (double v : row) most = std::max(most, std::isnan(v) ? infinity : std::abs(v));
+    return most;
 }
 
 class Look {
@@ -112,8 +119,8 @@ class Look {
             const LadderPath& path = paths[i / ladder.size()];
             volumes[i] = path.volume(path.exponent(i % ladder.size()), paths_.widths(path));
             if (through && points[i] == through->u) volumes[i] = std::min(volumes[i], through->volume);
-            if (path.thickness < infinity &&
-                (look_.on_ridges.empty() || size(rows[i]) > size(look_.on_ridges[0].value)))
+            if (path.thickness < infinity && std::isfinite(greatest(rows[i])) &&
+                (look_.on_ridges.empty() || greatest(rows[i]) > greatest(look_.on_ridges[0].value)))
                 look_.on_ridges.assign(1, {points[i], rows[i], volumes[i]});
             masses_.see(rows[i], volumes[i]);
         }
