@@ -173,12 +173,27 @@ TEST(Principled, BaseLiesBelowTheCoat) {
 }
 
 TEST(Principled, GrazingLightIsNeverNegative) {
-    for (const float coat_roughness : {0.0f, 0.2f, 1.0f}) {
-        const Bsdf bsdf = principled(Principled{.base_color = {0.9f},
-                                                .roughness = {0.6f},
-                                                .clearcoat = {1},
-                                                .clearcoat_roughness = {coat_roughness},
-                                                .sheen_color = {1}});
+    std::vector<Principled> materials;
+    for (const float roughness : {0.0f, 0.2f, 0.37f, 1.0f}) {
+        materials.push_back({.base_color = {0.9f},
+                             .roughness = {0.6f},
+                             .clearcoat = {1},
+                             .clearcoat_roughness = {roughness},
+                             .sheen_color = {1}});
+        // A dielectric that reflects everything, white or nearly so, and an ordinary one.
+        for (const float ior : {0.0f, 1.5f, 300.0f})
+            materials.push_back({.base_color = {0.9f}, .roughness = {roughness}, .ior = {ior}});
+        materials.push_back({.base_color = {0.9f},
+                             .roughness = {roughness},
+                             .anisotropy = {0.8f},
+                             .ior = {0},
+                             .specular = {0.9f},
+                             .specular_color = {0.99f},
+                             .sheen_color = {0.5f},
+                             .sheen_roughness = {roughness}});
+    }
+    for (const Principled& material : materials) {
+        const Bsdf bsdf = principled(material);
         for (int i = 0; i < 4000; ++i) {
             const float z = std::pow(10.0f, -7.0f * static_cast<float>(i) / 4000);
             const Vec3f wi{-std::sqrt(1 - z * z), 0, z}, wo{0.6f, 0, 0.8f};

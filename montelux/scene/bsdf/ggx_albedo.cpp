@@ -53,7 +53,7 @@ float isotropic(float alpha, float root_of_cosine) {
 float ggx_grazing_albedo(Ggx ggx, float cos_theta) {
     const float x = std::sqrt(std::max(cos_theta, 0.0f));
     const float a = isotropic(ggx.alpha_x, x);
-    return ggx.alpha_x == ggx.alpha_y ? a : std::max(a, isotropic(ggx.alpha_y, x));
+    return std::min(1.0f, ggx.alpha_x == ggx.alpha_y ? a : std::max(a, isotropic(ggx.alpha_y, x)));
 }
 
 } // namespace montelux

@@ -14,7 +14,7 @@ float ggx_grazing_albedo(Ggx ggx, float cos_theta);
 // takes away counts as reflected.
 inline SampledSpectrum ggx_schlick_albedo(Ggx ggx, float cos_theta, SampledSpectrum f0, float f90) {
     const float b = ggx_grazing_albedo(ggx, cos_theta);
-    return (1 - b) * f0 + b * f90;
+    return f0 + b * (f90 - f0); // where both are 1, exactly 1
 }
 
 } // namespace montelux

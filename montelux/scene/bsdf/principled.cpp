@@ -63,8 +63,7 @@ float PrincipledLayers::coat_albedo(Vec3f w) const {
     if (coat == 0 || !is_outside(w)) return 0;
     const float cosine = abs_cos_theta(in_coat(w));
     if (cosine == 0 && is_coat_tilted()) return 0;
-    // At grazing angles rounding leads beyond 1, and what is below the coat would be negative.
-    return std::min(1.0f, coat * ggx_schlick_albedo(coat_ggx, cosine, SampledSpectrum(coat_f0), 1)[0]);
+    return coat * ggx_schlick_albedo(coat_ggx, cosine, SampledSpectrum(coat_f0), 1)[0];
 }
 SampledSpectrum PrincipledLayers::sheen_albedo(Vec3f w) const {
     if (is_black(sheen_color) || !is_outside(w)) return SampledSpectrum(0);
