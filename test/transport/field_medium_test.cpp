@@ -47,6 +47,45 @@ TEST(FieldMedium, GridsGoOnBeyondTheirSamples) {
     EXPECT_FLOAT_EQ(extinction(0.01f), 6);
 }
 
+TEST(FieldMedium, GridsMayRepeatOrBeMirroredBeyondTheirSamples) {
+    VolumeScene b;
+    const MediumField albedo = scalars(b.add_grid(1, 1, 4, {0.1f, 0.2f, 0.3f, 0.5f}));
+    FieldMedium m = field_medium({.value = 1}, albedo);
+    m.bounded = false;
+    const auto at = [&](float sample, GridWrap wrap, bool nearest) { // of the row
+        m.albedo.wrap = wrap;
+        m.albedo.nearest = nearest;
+        return coefficients(b, m, {0.9f, -0.9f, (sample + 0.5f) / 2 - 1}).sigma_s[0];
+    };
+    // The half-way point between a border and what stands beyond it; then far beyond.
+    EXPECT_FLOAT_EQ(at(-0.5f, GridWrap::clamp, false), 0.1f);
+    EXPECT_FLOAT_EQ(at(-0.5f, GridWrap::repeat, false), 0.3f);
+    EXPECT_FLOAT_EQ(at(-0.5f, GridWrap::mirror, false), 0.1f);
+    EXPECT_FLOAT_EQ(at(3.5f, GridWrap::repeat, false), 0.3f);
+    EXPECT_FLOAT_EQ(at(3.5f, GridWrap::mirror, false), 0.5f);
+    EXPECT_FLOAT_EQ(at(6.5f, GridWrap::repeat, false), 0.4f);
+    EXPECT_FLOAT_EQ(at(6.5f, GridWrap::mirror, false), 0.15f);
+    EXPECT_FLOAT_EQ(at(-9.75f, GridWrap::repeat, true), 0.3f);
+    EXPECT_FLOAT_EQ(at(-9.75f, GridWrap::mirror, true), 0.2f);
+    EXPECT_FLOAT_EQ(at(-9.75f, GridWrap::clamp, true), 0.1f);
+}
+
+// Majorants near a face bound what is repeated there.
+TEST(FieldMedium, MajorantsBoundWhatWrapsAround) {
+    VolumeScene b;
+    FieldMedium m =
+        field_medium(scalars(b.add_grid(1, 1, 32, std::vector<float>(31, 0.0f))), {.value = 0.25f});
+    b.scene.scalar_grids.back().values.push_back(5);
+    m.extinction.wrap = GridWrap::repeat;
+    b.scene.media = {m};
+    const SceneTables tables(b.scene);
+    const MediumTable& table = tables.view().medium_tables[0];
+    EXPECT_GE(table.majorants.values.front(), 2.5f);
+    m.extinction.wrap = GridWrap::clamp;
+    b.scene.media = {m};
+    EXPECT_EQ(SceneTables(b.scene).view().medium_tables[0].majorants.values.front(), 0);
+}
+
 TEST(FieldMedium, AlbedoHasAPlaceOfItsOwn) {
     VolumeScene b;
     // Along x, where the extinction varies along z.

@@ -154,10 +154,8 @@ MediumLibrary::PlacedField MediumLibrary::grid(Plugin volume) {
     placed.field.scalars = grid.scalars;
     placed.field.colors = grid.colors;
     placed.field.nearest = volume.choice("filter_type", "trilinear", {"trilinear", "nearest"}) == "nearest";
-    // Media end at the faces of the unit cube, where reflected coordinates are the same as clamped ones.
-    if (volume.choice("wrap_mode", "clamp", {"clamp", "repeat", "mirror"}) == "repeat")
-        volume.warn(
-            "'wrap_mode' is read as 'clamp': it makes a difference within half a sample of the faces");
+    const std::string wrap = volume.choice("wrap_mode", "clamp", {"clamp", "repeat", "mirror"});
+    if (wrap != "clamp") placed.field.wrap = wrap == "repeat" ? GridWrap::repeat : GridWrap::mirror;
     for (const std::string_view without_effect : {"raw", "accel", "max_value"}) volume.skip(without_effect);
     placed.world_from_unit = affine_transform(volume);
     if (volume.flag("use_grid_bbox", false)) {

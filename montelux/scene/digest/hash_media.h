@@ -62,9 +62,9 @@ inline void hash_values(SceneHasher& h, const SparseGridMedium& m) {
           temperature_scale, phase);
 }
 inline void hash_values(SceneHasher& h, const MediumField& f) {
-    const auto& [value, scalars, colors, nearest, unit_from_world] = f;
+    const auto& [value, scalars, colors, nearest, wrap, unit_from_world] = f;
     const auto& [rows, offset] = unit_from_world;
-    h.all(value, scalars, colors, nearest, rows, offset);
+    h.all(value, scalars, colors, nearest, wrap, rows, offset);
 }
 inline void hash_values(SceneHasher& h, const FieldMedium& m) {
     const auto& [box, bounded, extinction, albedo, scale, phase] = m;

@@ -8,12 +8,13 @@
 
 namespace montelux {
 
-// A value in space. Beyond the unit cube of a grid the samples of its border go on.
+// A value in space.
 struct MediumField {
     SceneSpectrum value{1};   // everywhere, if there is no grid
     Index scalars = no_index; // into Scene::scalar_grids
     Index colors = no_index;  // into Scene::color_grids; not both
     bool nearest = false;     // the nearest sample, instead of the interpolated ones
+    GridWrap wrap = GridWrap::clamp;
     AffineMap unit_from_world{};
 
     bool is_grid() const { return scalars != no_index || colors != no_index; }
@@ -41,12 +42,13 @@ struct FieldMedium {
             if (!field->is_grid()) return value;
             const Point3f unit = field->unit_from_world.point(p);
             if (scalars != nullptr) {
-                if (field->nearest) return SampledSpectrum(scalars->nearest(unit));
-                return SampledSpectrum(scalars->interpolate_extended<float>(unit, [](float v) { return v; }));
+                if (field->nearest) return SampledSpectrum(scalars->nearest(unit, field->wrap));
+                return SampledSpectrum(
+                    scalars->interpolate_wrapped<float>(unit, field->wrap, [](float v) { return v; }));
             }
             const auto sampled = [&](const ScaledPolynomial& s) { return s.sample(lambda); };
-            if (field->nearest) return sampled(colors->nearest(unit));
-            return colors->interpolate_extended<SampledSpectrum>(unit, sampled);
+            if (field->nearest) return sampled(colors->nearest(unit, field->wrap));
+            return colors->interpolate_wrapped<SampledSpectrum>(unit, field->wrap, sampled);
         }
     };
     struct Sampled {

@@ -146,9 +146,10 @@ MediumTable FieldMedium::table(const Scene& scene) const {
             last = max(last, p);
         }
         if (extinction.scalars != no_index)
-            return scene.scalar_grids[extinction.scalars].largest(first, last, [](float v) { return v; });
+            return scene.scalar_grids[extinction.scalars].largest(
+                first, last, [](float v) { return v; }, extinction.wrap);
         return scene.color_grids[extinction.colors].largest(
-            first, last, [](const ScaledPolynomial& s) { return s.max_value(); });
+            first, last, [](const ScaledPolynomial& s) { return s.max_value(); }, extinction.wrap);
     };
     return {unit_from_world, medium_from_world, majorant_grid(bound)};
 }

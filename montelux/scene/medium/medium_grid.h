@@ -5,12 +5,26 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "montelux/mc/math/vec.h"
 #include "montelux/spectrum/rgb_spectra.h"
 
 namespace montelux {
+
+// What lies beyond the unit cube of a grid: the samples of its border, the grid again, or its mirror image.
+enum class GridWrap : std::uint8_t { clamp, repeat, mirror };
+
+// Index of the sample that sample i of a row stands for, where the row has n. Far away or NaN it is any of them.
+inline std::size_t wrapped(float i, float n, GridWrap wrap) {
+    if (wrap == GridWrap::repeat) i -= n * std::floor(i / n);
+    if (wrap == GridWrap::mirror) {
+        i -= 2 * n * std::floor(i / (2 * n));
+        if (i >= n) i = 2 * n - 1 - i;
+    }
+    return static_cast<std::size_t>(std::min(std::max(0.0f, i), n - 1));
+}
 
 // Sample (x, y, z) is values[(z ny + y) nx + x] and lies at ((x + 1/2) / nx, (y + 1/2) / ny, (z + 1/2) / nz).
 // Outside the samples the value is 0, as in pbrt-v4: it falls to half at the faces of the cube.
@@ -56,17 +70,17 @@ struct Grid3 {
         return sum;
     }
 
-    // The same with the samples of the border beyond them, not 0.
+    // Interpolates where samples go on beyond the cube.
     template <typename V, typename Value>
-    V interpolate_extended(Point3f p, const Value& value) const {
+    V interpolate_wrapped(Point3f p, GridWrap wrap, const Value& value) const {
         std::array<std::array<std::size_t, 2>, 3> at{};
         std::array<float, 3> fraction{};
         for (std::size_t a = 0; a < 3; ++a) {
-            const auto last = static_cast<float>(size[a] - 1);
-            const float x = std::min(std::max(p[static_cast<int>(a)] * (last + 1) - 0.5f, 0.0f), last);
+            const auto n = static_cast<float>(size[a]);
+            float x = p[static_cast<int>(a)] * n - 0.5f;
+            if (wrap == GridWrap::clamp) x = std::min(std::max(x, 0.0f), n - 1);
             const float floor = std::floor(x);
-            at[a][0] = static_cast<std::size_t>(floor);
-            at[a][1] = std::min(at[a][0] + 1, static_cast<std::size_t>(size[a] - 1));
+            at[a] = {wrapped(floor, n, wrap), wrapped(floor + 1, n, wrap)};
             fraction[a] = x - floor;
         }
         V sum{};
@@ -83,19 +97,19 @@ struct Grid3 {
         return sum;
     }
 
-    // The sample in whose cell p lies, or the nearest one outside the cube.
-    const T& nearest(Point3f p) const {
+    // The sample in whose cell p lies.
+    const T& nearest(Point3f p, GridWrap wrap) const {
         std::array<std::size_t, 3> at{};
         for (std::size_t a = 0; a < 3; ++a) {
             const auto n = static_cast<float>(size[a]);
-            at[a] = static_cast<std::size_t>(std::min(std::max(p[static_cast<int>(a)] * n, 0.0f), n - 1));
+            at[a] = wrapped(std::floor(p[static_cast<int>(a)] * n), n, wrap);
         }
         return values[(at[2] * std::size_t(size[1]) + at[1]) * std::size_t(size[0]) + at[0]];
     }
 
     // The largest of bound(sample) over the samples that these functions may take for points of a box.
     template <typename Bound>
-    float largest(Point3f lower, Point3f upper, const Bound& bound) const {
+    float largest(Point3f lower, Point3f upper, const Bound& bound, GridWrap wrap = GridWrap::clamp) const {
         std::array<int, 3> first{}, last{};
         for (int a = 0; a < 3; ++a) {
             const auto at = static_cast<std::size_t>(a);
@@ -107,6 +121,11 @@ struct Grid3 {
             };
             first[at] = std::max(sample(lower[a] * n - 0.5f - margin), 0);
             last[at] = std::min(sample(upper[a] * n - 0.5f + margin) + 1, size[at] - 1);
+            const bool beyond = lower[a] * n < 0.5f + margin || upper[a] * n > n - 0.5f - margin;
+            if (wrap != GridWrap::clamp && beyond) { // anything may stand there
+                first[at] = 0;
+                last[at] = size[at] - 1;
+            }
         }
         float result = 0;
         for (int z = first[2]; z <= last[2]; ++z)

@@ -146,6 +146,16 @@ TEST(MitsubaHomogeneousMedium, MayHaveAGridOfAlbedo) {
     EXPECT_FALSE(m.bounded);
     EXPECT_FLOAT_EQ(m.extinction.value.constant, 2);
     EXPECT_EQ(looks.scene.color_grids.at(m.albedo.colors).values.size(), 2u);
+    EXPECT_EQ(m.albedo.wrap, GridWrap::clamp);
+    for (const auto& [name, wrap] :
+         {std::pair{"clamp", GridWrap::clamp}, std::pair{"repeat", GridWrap::repeat},
+          std::pair{"mirror", GridWrap::mirror}})
+        EXPECT_EQ(
+            read<FieldMedium>(medium("<volume type=\"gridvolume\" name=\"albedo\"><string name=\"filename\" "
+                                     "value=\"color.vol\"/><string name=\"wrap_mode\" value=\"" +
+                                     std::string(name) + "\"/></volume>"))
+                .albedo.wrap,
+            wrap);
 }
 
 TEST(MitsubaHeterogeneousMedium, HasAGridInAPlace) {
