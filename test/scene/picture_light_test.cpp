@@ -73,6 +73,22 @@ TEST(ProjectionLight, DirectionsAndTexels) {
     EXPECT_EQ(black.flux(), 0);
 }
 
+// Where a lit texel is looked up half a texel away, or beyond the opposite edge, there are samples.
+TEST(ProjectionLight, DensityFollowsTheLookup) {
+    Image column(4, 1, {"R", "G", "B"});
+    for (int c = 0; c < 3; ++c) column.set(0, 0, c, 1);
+    const ProjectionScreen screen(4, 1, 60);
+    const auto pdf = [&](PictureLookup lookup, float x) {
+        return ProjectionTable(column, 60, ProjectionProfile::irradiance, lookup)
+            .pdf(screen.direction({x, 0.5f}));
+    };
+    EXPECT_GT(pdf(PictureLookup::repeating, 3.9f), 0);
+    EXPECT_EQ(pdf(PictureLookup::bilinear, 3.9f), 0);
+    EXPECT_GT(pdf(PictureLookup::bilinear, 1.2f), 0);
+    EXPECT_EQ(pdf(PictureLookup::nearest, 1.2f), 0);
+    EXPECT_GT(pdf(PictureLookup::nearest, 0.2f), 0);
+}
+
 // The power of a grey picture: its share of the intensity times the solid angle of each texel.
 TEST(ProjectionLight, PowerIsTheFlux) {
     Scene scene;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 #include <utility>
 
 #include "montelux/formats/mitsuba/coverage.h"
@@ -91,14 +92,17 @@ Emission LightReader::emission(Plugin emitter) {
     on_shapes_.insert(emitter.index());
     Emission emission;
     if (const std::optional<Picture> found = picture(emitter, "radiance")) {
-        const auto [known, is_new] = pictures_.try_emplace(found->texture.index(), no_index);
-        if (is_new)
-            known->second = builder_.add_light_picture(upside_down(picture_of_texture(found->texture)),
-                                                       found->texture.describe(), found->texture.at());
-        emission.picture = known->second;
+        const auto [known, is_new] = pictures_.try_emplace(found->texture.index());
+        if (is_new) {
+            const LightPicture picture = picture_of_texture(found->texture);
+            known->second = {builder_.add_light_picture(upside_down(picture.image), found->texture.describe(),
+                                                        found->texture.at()),
+                             picture.lookup};
+        }
+        std::tie(emission.picture, emission.picture_lookup) = known->second;
         emission.equal_energy = found->equal_energy;
         emission.scale = static_cast<float>(found->scale) * white_of_pictures(found->equal_energy);
-        emission.picture_mean = mean_luminance(builder_.scene().environments[known->second]);
+        emission.picture_mean = mean_luminance(builder_.scene().environments[emission.picture]);
     } else {
         const Source s = source(emitter, "radiance");
         emission.spectrum = s.spectrum;
@@ -160,8 +164,10 @@ void LightReader::add_spot(Plugin& emitter) {
         const auto size = static_cast<float>(1 / std::tan(end * pi / 180));
         light.picture_x = size * Vec3f(direction(emitter, to_world.vector(Vec3d(1, 0, 0))));
         light.picture_y = size * Vec3f(direction(emitter, to_world.vector(Vec3d(0, 1, 0))));
-        light.picture = builder_.add_light_picture(picture_of_texture(found->texture),
-                                                   found->texture.describe(), found->texture.at());
+        const LightPicture picture = picture_of_texture(found->texture);
+        light.picture =
+            builder_.add_light_picture(picture.image, found->texture.describe(), found->texture.at());
+        light.picture_lookup = picture.lookup;
     } else if (emitter.has("texture")) {
         emitter.error("'texture' of a spot light is no picture; expected a 'bitmap'");
     }
@@ -197,7 +203,9 @@ void LightReader::add_projector(Plugin& emitter) {
     double picture_scale = 1;
     ProjectionLight light;
     if (const std::optional<Picture> found = this->picture(emitter, "irradiance")) {
-        picture = picture_of_texture(found->texture);
+        LightPicture given = picture_of_texture(found->texture);
+        picture = std::move(given.image);
+        light.picture_lookup = given.lookup;
         picture_scale = found->scale;
         light.equal_energy = found->equal_energy;
     } else {

@@ -3,10 +3,12 @@
 
 #include <map>
 #include <set>
+#include <utility>
 
 #include "montelux/formats/mitsuba/plugin.h"
 #include "montelux/formats/mitsuba/spectra.h"
 #include "montelux/scene/build/scene_builder.h"
+#include "montelux/scene/light/picture_lookup.h"
 #include "montelux/scene/render_settings.h"
 
 namespace montelux::mitsuba {
@@ -46,8 +48,8 @@ class LightReader {
     void add_sky(Plugin& emitter);
 
     SceneBuilder& builder_;
-    std::map<std::size_t, Index> pictures_; // on surfaces, by Plugin::index
-    std::set<std::size_t> on_shapes_;       // emitters, by Plugin::index
+    std::map<std::size_t, std::pair<Index, PictureLookup>> pictures_; // on surfaces, by Plugin::index
+    std::set<std::size_t> on_shapes_;                                 // emitters, by Plugin::index
 };
 
 } // namespace montelux::mitsuba

@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "montelux/image/image_read.h"
@@ -41,7 +42,7 @@ Image picture_in_file(Plugin& owner, std::string_view property) {
     }
 }
 
-Image picture_of_texture(Plugin texture) {
+LightPicture picture_of_texture(Plugin texture) {
     if (texture.type() != "bitmap")
         texture.error("a light with " + texture.describe() +
                       " is not supported; expected a 'bitmap' or a spectrum");
@@ -50,7 +51,12 @@ Image picture_of_texture(Plugin texture) {
     if (!keeps_unit_square(to_uv))
         texture.error("the 'to_uv' of a light's picture must map the unit square onto itself");
     texture.ignore("raw", "colours of lights are spectra");
-    for (const char* name : {"filter_type", "wrap_mode", "format", "accel"}) texture.skip(name);
+    PictureLookup lookup = PictureLookup::bilinear; // which a mirrored picture is on the unit square, too
+    if (texture.choice("wrap_mode", "repeat", {"repeat", "mirror", "clamp"}) == "repeat")
+        lookup = PictureLookup::repeating;
+    if (texture.choice("filter_type", "bilinear", {"bilinear", "nearest"}) == "nearest")
+        lookup = PictureLookup::nearest;
+    for (const char* name : {"format", "accel"}) texture.skip(name);
     texture.finish();
     const bool turned = std::abs(to_uv.matrix().m[0][0]) < 0.5; // u is the picture's v
     const int width = turned ? picture.height() : picture.width(),
@@ -63,7 +69,7 @@ Image picture_of_texture(Plugin texture) {
                       from_y = static_cast<int>(p.y * picture.height());
             for (int c = 0; c < 3; ++c) shown.set(x, y, c, picture.value(from_x, from_y, c));
         }
-    return shown;
+    return {std::move(shown), lookup};
 }
 
 Image environment_rows(const Image& map) {

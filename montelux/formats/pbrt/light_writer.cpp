@@ -84,6 +84,8 @@ std::string SceneWriter::area_light(Index i, bool is_quadric, float area) {
     if (l.equal_energy)
         warn(what, "its picture has the constant spectrum for white; pbrt takes an illuminant");
     if (l.picture != no_index) d.string("filename", environment_file(l.picture));
+    if (l.picture != no_index && l.picture_lookup != PictureLookup::bilinear)
+        warn(what, "pbrt interpolates its picture, and lets the border of it go on to the edges");
     const Spectrum s = spectrum_of(l.spectrum, scene_.spectra);
     const std::string_view name = l.picture != no_index ? "" : "L";
     if (l.primitive_flux > 0) {
@@ -209,8 +211,13 @@ void SceneWriter::light(std::size_t i) {
                 DirectiveText d = directive("infinite");
                 place(l.world_from_light, l.motion);
                 d.string("filename", environment_file(l.environment));
-                map_scale(d, l.scale, white_scale(), what,
-                          upper_illuminance(scene_.environments[l.environment], l.layout), "illuminance");
+                const Image& map = scene_.environments[l.environment];
+                if (l.layout == EnvironmentLayout::equirectangular) {
+                    d.string("layout", name_of(l.layout));
+                    warn(what, "its map is latitude-longitude, which pbrt-v4 refuses ('imgtool makeequiarea' "
+                               "converts it)");
+                }
+                map_scale(d, l.scale, white_scale(), what, upper_illuminance(map, l.layout), "illuminance");
                 portal(d, l.portal);
                 finish(d);
             },

@@ -9,7 +9,6 @@
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
-#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/build/float_range.h"
 #include "montelux/scene/light/projection_table.h"
 #include "montelux/spectrum/rgb_colorspace.h"
@@ -70,14 +69,14 @@ Emission LightReader::read_area(const Plugin& plugin, const RgbColorSpace& color
     ParameterReader r(plugin.parameters, "area light " + in_quotes(plugin.name), plugin.at, diagnostics_);
     if (plugin.name != "diffuse")
         r.error("unknown area light " + in_quotes(plugin.name) +
-                did_you_mean(plugin.name, plugin_names("AreaLightSource")) + "; expected 'diffuse'");
+                plugin_suggestion("AreaLightSource", plugin.name) + "; expected 'diffuse'");
     const std::optional<std::string> file = r.string("filename");
     if (file && r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
     Source s = source(r, "L", file ? RgbColorSpace::srgb() : color_space);
     Emission e{s.spectrum, s.scale, r.boolean("twosided", false), r.number("power", -1)};
     e.group = r.string("group", "");
     if (file) {
-        e.picture = picture(*file, r.at("filename"), MapUse::projection);
+        e.picture = picture(*file, r.at("filename"), MapUse::picture);
         const Image& image = builder_.scene().environments[e.picture];
         const Vec3d weights = RgbColorSpace::srgb().luminance_weights();
         double sum = 0;
@@ -141,8 +140,7 @@ void LightReader::read(const Plugin& plugin, const Transform& at_start, const Tr
         light = plugin.name == "projection" ? projection(r, world_from_light)
                                             : goniometric(r, world_from_light, color_space);
     } else {
-        r.error("unknown light " + in_quotes(plugin.name) +
-                did_you_mean(plugin.name, plugin_names("LightSource")));
+        r.error("unknown light " + in_quotes(plugin.name) + plugin_suggestion("LightSource", plugin.name));
     }
     const std::string group = r.string("group", "");
     r.finish();
@@ -197,9 +195,20 @@ Light LightReader::infinite(ParameterReader& r, const Transform& world_from_ligh
     }
     if (r.ignored("L")) r.error("L", "'L' together with 'filename'; expected one or the other");
     ImageInfiniteLight light;
-    light.environment = picture(*file, r.at("filename"), MapUse::radiance);
+    constexpr EnvironmentLayout equal_area = EnvironmentLayout::equal_area,
+                                equirectangular = EnvironmentLayout::equirectangular;
+    const std::string_view layout =
+        r.choice("layout", {"auto", name_of(equal_area), name_of(equirectangular)}, "auto");
+    light.environment =
+        picture(*file, r.at("filename"), layout == "auto" ? MapUse::radiance : MapUse::picture);
     const Image& map = builder_.scene().environments[light.environment];
-    light.layout = *layout_of_size(map.width(), map.height());
+    if (layout == "auto")
+        light.layout = *layout_of_size(map.width(), map.height());
+    else
+        light.layout = layout == name_of(equal_area) ? equal_area : equirectangular;
+    if (light.layout == equal_area && map.width() != map.height())
+        r.error("layout", "an equal-area map is square; this one has " + std::to_string(map.width()) + " x " +
+                              std::to_string(map.height()) + " pixels");
     light.world_from_light = world_from_light;
     light.portal = through;
     light.scale = r.number("scale", 1);
@@ -271,7 +280,7 @@ Light LightReader::projection(ParameterReader& r, const Transform& world_from_li
     light.scale *= photometric_scale(Spectrum(RgbColorSpace::srgb().illuminant()), r);
     light.world_from_light = world_from_light;
     const std::string file = needed_file(r);
-    light.environment = picture(file, r.at("filename"), MapUse::projection);
+    light.environment = picture(file, r.at("filename"), MapUse::picture);
     light.scale *= power_factor(r, projected_flux(builder_.scene().environments[light.environment], light.fov,
                                                   RgbColorSpace::srgb().luminance_weights()));
     return light;
@@ -284,7 +293,7 @@ Index LightReader::picture(const std::string& file, Location at, MapUse use) {
     std::vector<std::uint8_t> bytes = files_.read(path, at);
     try {
         const Image picture = read_image(bytes, path.string());
-        if (use == MapUse::projection)
+        if (use == MapUse::picture)
             return pictures_[key] = builder_.add_light_picture(picture, path.string(), at);
         const Index index = builder_.add_environment(use == MapUse::intensity ? grey_map(picture) : picture,
                                                      path.string(), at);

@@ -40,8 +40,8 @@ class LightReader {
     Light goniometric(ParameterReader& r, const Transform& world_from_light,
                       const RgbColorSpace& color_space);
     Light projection(ParameterReader& r, const Transform& world_from_light);
-    // What the pixels of a map are; maps of intensity are grey.
-    enum class MapUse : std::uint8_t { radiance, intensity, projection };
+    // What the pixels of a map are: maps of intensity are grey, pictures have any shape.
+    enum class MapUse : std::uint8_t { radiance, intensity, picture };
     // The index of a file's picture in Scene::environments; read once for each use.
     Index picture(const std::string& file, Location at, MapUse use);
 

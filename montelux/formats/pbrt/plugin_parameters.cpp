@@ -23,10 +23,9 @@ constexpr std::string_view shape_parameters[] = {"N",           "P",
                                                  "zmin"};
 
 constexpr std::string_view light_parameters[] = {
-    "I",         "L",           "azimuth", "conedeltaangle", "coneangle",
-    "elevation", "filename",    "fov",     "from",           "groundalbedo",
-    "group",     "illuminance", "portal",  "power",          "scale",
-    "sun",       "sundisc",     "to",      "turbidity",      "twosided"};
+    "I",     "L",     "azimuth",      "conedeltaangle", "coneangle",   "elevation", "filename",
+    "fov",   "from",  "groundalbedo", "group",          "illuminance", "layout",    "portal",
+    "power", "scale", "sun",          "sundisc",        "to",          "turbidity", "twosided"};
 
 constexpr std::string_view material_parameters[] = {"albedo",
                                                     "alpha",

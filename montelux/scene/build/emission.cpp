@@ -30,6 +30,7 @@ AreaLight Emission::light(Index shape, const Geometry& geometry) const {
                     .two_sided = two_sided,
                     .shape = shape,
                     .picture = picture,
+                    .picture_lookup = picture_lookup,
                     .equal_energy = equal_energy};
     if (!(power > 0)) return light;
     const float power_of_white = static_cast<float>(static_cast<double>(power) / picture_mean);

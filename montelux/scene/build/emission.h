@@ -5,6 +5,7 @@
 
 #include "montelux/scene/build/geometry.h"
 #include "montelux/scene/light/area_light.h"
+#include "montelux/scene/light/picture_lookup.h"
 
 namespace montelux {
 
@@ -27,6 +28,7 @@ struct Emission {
     bool two_sided = false;
     float power = 0; // lm of each primitive, if positive: scale is then multiplied by power / emitted power
     Index picture = no_index; // AreaLight::picture
+    PictureLookup picture_lookup = PictureLookup::bilinear;
     bool equal_energy = false;
     double picture_mean = 1; // luminance, by which the emitted power is multiplied
     std::string group{};     // of lights that share a layer (light_groups.h); may be empty

@@ -10,9 +10,10 @@
 namespace montelux {
 
 inline void hash_values(SceneHasher& h, const AreaLight& l) {
-    const auto& [spectrum, scale, two_sided, shape, primitive_flux, picture, equal_energy] = l;
+    const auto& [spectrum, scale, two_sided, shape, primitive_flux, picture, picture_lookup, equal_energy] =
+        l;
     h.all(spectrum, scale, two_sided, shape, primitive_flux);
-    if (picture != no_index) h.all(picture);
+    if (picture != no_index) h.all(picture, picture_lookup);
     if (equal_energy) h.all(equal_energy);
 }
 inline void hash_values(SceneHasher& h, const PointLight& l) {
@@ -22,11 +23,11 @@ inline void hash_values(SceneHasher& h, const PointLight& l) {
 }
 inline void hash_values(SceneHasher& h, const SpotLight& l) {
     const auto& [spectrum, scale, position, axis, cos_falloff_start, cos_total_width, motion, profile,
-                 picture, picture_x, picture_y] = l;
+                 picture, picture_lookup, picture_x, picture_y] = l;
     h.all(spectrum, scale, position, axis, cos_falloff_start, cos_total_width);
     if (motion != no_index) h.all(motion);
     if (profile != SpotFalloff::smooth) h.all(profile);
-    if (picture != no_index) h.all(picture, picture_x, picture_y);
+    if (picture != no_index) h.all(picture, picture_lookup, picture_x, picture_y);
 }
 inline void hash_values(SceneHasher& h, const DistantLight& l) {
     const auto& [spectrum, scale, to_light, motion] = l;
@@ -63,11 +64,12 @@ inline void hash_values(SceneHasher& h, const GoniometricLight& l) {
     if (motion != no_index) h.all(motion);
 }
 inline void hash_values(SceneHasher& h, const ProjectionLight& l) {
-    const auto& [environment, scale, fov, world_from_light, motion, profile, equal_energy] = l;
+    const auto& [environment, scale, fov, world_from_light, motion, profile, equal_energy, picture_lookup] =
+        l;
     h.all(environment, scale, fov, world_from_light);
     if (motion != no_index) h.all(motion);
     // Numbered, as both are a byte.
-    if (profile != ProjectionProfile::intensity) h.all(std::uint8_t{1}, profile);
+    if (profile != ProjectionProfile::intensity) h.all(std::uint8_t{1}, profile, picture_lookup);
     if (equal_energy) h.all(std::uint8_t{2}, equal_energy);
 }
 // Its tables follow from its settings.

@@ -58,8 +58,8 @@ SampledSpectrum color_at(const AreaLight& light, const LightContext& context, Po
     hit.shape = light.shape;
     hit.instance = context.tables().instance(context.light);
     const Point2f uv = surface_point(context.scene, ray_at(context, p, w), hit, true).uv;
-    return light.equal_energy ? context.tables().picture_color(light.picture, uv, lambda)
-                              : context.tables().picture_radiance(light.picture, uv, lambda);
+    return context.tables().picture_color(light.picture, uv, light.picture_lookup, lambda) *
+           LightTablesView::white_of_picture(light.equal_energy, lambda);
 }
 
 // As if the picture covered each part evenly.

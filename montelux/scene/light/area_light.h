@@ -2,6 +2,7 @@
 #pragma once
 
 #include "montelux/scene/light/light_model.h"
+#include "montelux/scene/light/picture_lookup.h"
 #include "montelux/scene/scene_spectrum.h"
 
 namespace montelux {
@@ -21,8 +22,9 @@ struct AreaLight {
     // If positive, each primitive of a mesh emits this flux times scale * spectrum, whatever its area at the time.
     float primitive_flux = 0;
     // If given, into Scene::environments: the colours of this picture instead of the spectrum, by the surface's
-    // texture coordinates (bilinear; the top row at v = 1). A given flux is then that of a white picture.
+    // texture coordinates (the top row at v = 1). A given flux is then that of a white picture.
     Index picture = no_index;
+    PictureLookup picture_lookup = PictureLookup::bilinear;
     // White of the picture is the constant spectrum 1 instead of the white illuminant.
     bool equal_energy = false;
 

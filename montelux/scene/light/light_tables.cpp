@@ -117,7 +117,7 @@ LightTables::LightTables(const Scene& scene, const EnvironmentSettings& settings
                                   const Image& picture = scene.environments[l.environment];
                                   add_spectra(scene, l.environment);
                                   environment_of_light_[i] = static_cast<Index>(projections_.size());
-                                  projections_.emplace_back(picture, l.fov, l.profile);
+                                  projections_.emplace_back(picture, l.fov, l.profile, l.picture_lookup);
                               },
                               // Sampled in closed form.
                               [](const PointLight&) {}, [](const DistantLight&) {},

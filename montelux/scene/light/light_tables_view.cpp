@@ -30,22 +30,30 @@ float LightTablesView::map_value(Index map, const EnvironmentGrid& grid, Vec2f p
     return sum;
 }
 
-SampledSpectrum LightTablesView::picture_color(Index map, Point2f uv,
+SampledSpectrum LightTablesView::picture_color(Index map, Point2f uv, PictureLookup by,
                                                const SampledWavelengths& lambda) const {
     const int width = maps[map].width(), height = maps[map].height();
     const auto place = [](float t, int n) { // not a number: 0
         return std::max(0.0f, std::min(t, 1.0f)) * static_cast<float>(n) - 0.5f;
     };
     const float x = place(uv.x, width), y = place(1 - uv.y, height);
+    const auto texel = [&](int column, int row) {
+        const auto within = [&](int i, int n) {
+            return static_cast<std::size_t>(by == PictureLookup::repeating ? (i + n) % n
+                                                                           : std::clamp(i, 0, n - 1));
+        };
+        return texel_factor(
+            map, within(row, height) * static_cast<std::size_t>(width) + within(column, width), lambda);
+    };
+    if (by == PictureLookup::nearest)
+        return texel(static_cast<int>(std::floor(x + 0.5f)), static_cast<int>(std::floor(y + 0.5f)));
     const int x0 = static_cast<int>(std::floor(x)), y0 = static_cast<int>(std::floor(y));
     SampledSpectrum sum;
     for (int k = 0; k < 4; ++k) {
         const int dx = k & 1, dy = k >> 1;
         const float share =
             std::abs(static_cast<float>(x0 + 1 - dx) - x) * std::abs(static_cast<float>(y0 + 1 - dy) - y);
-        const auto column = static_cast<std::size_t>(std::clamp(x0 + dx, 0, width - 1)),
-                   row = static_cast<std::size_t>(std::clamp(y0 + dy, 0, height - 1));
-        sum += texel_factor(map, row * static_cast<std::size_t>(width) + column, lambda) * share;
+        sum += texel(x0 + dx, y0 + dy) * share;
     }
     return sum;
 }

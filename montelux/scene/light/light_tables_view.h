@@ -8,6 +8,7 @@
 #include "montelux/scene/light/environment/environment_sampler.h"
 #include "montelux/scene/light/environment/portal_sampler.h"
 #include "montelux/scene/light/image_infinite_light.h"
+#include "montelux/scene/light/picture_lookup.h"
 #include "montelux/scene/light/projection_table.h"
 #include "montelux/scene/shape/quadric.h"
 
@@ -66,13 +67,13 @@ struct LightTablesView {
                                  const SampledWavelengths& lambda) const;
     // The first channel of a map at a position on its grid.
     float map_value(Index map, const EnvironmentGrid& grid, Vec2f place) const;
-    // The colour of a picture on a surface at texture coordinates, which are clamped to [0, 1], under the white
-    // illuminant: bilinear, with the top row at v = 1.
-    SampledSpectrum picture_radiance(Index map, Point2f uv, const SampledWavelengths& lambda) const {
-        return picture_color(map, uv, lambda) * map_color_space().illuminant().sample(lambda);
+    // The colour of a picture at texture coordinates, which are clamped to [0, 1], with the top row at v = 1.
+    SampledSpectrum picture_color(Index map, Point2f uv, PictureLookup by,
+                                  const SampledWavelengths& lambda) const;
+    // The white of a picture: the constant spectrum 1, or the illuminant.
+    static SampledSpectrum white_of_picture(bool equal_energy, const SampledWavelengths& lambda) {
+        return equal_energy ? SampledSpectrum(1) : map_color_space().illuminant().sample(lambda);
     }
-    // The same without the illuminant.
-    SampledSpectrum picture_color(Index map, Point2f uv, const SampledWavelengths& lambda) const;
     // The colour of a texel under the white illuminant.
     SampledSpectrum texel_radiance(Index map, std::size_t texel, const SampledWavelengths& lambda) const {
         return texel_factor(map, texel, lambda) * map_color_space().illuminant().sample(lambda);

@@ -22,11 +22,9 @@ SampledSpectrum intensity(const LightContext& context, const ProjectionLight& li
     if (light.profile == ProjectionProfile::irradiance) {
         const auto height = static_cast<float>(table_of(context).screen().height());
         const Point2f uv{texels.x / static_cast<float>(width), 1 - texels.y / height};
-        const LightTablesView& tables = context.tables();
-        const SampledSpectrum color = light.equal_energy
-                                          ? tables.picture_color(light.environment, uv, lambda)
-                                          : tables.picture_radiance(light.environment, uv, lambda);
-        return color * (light.scale * intensity_of_white(light.profile, normalize(w).z));
+        return context.tables().picture_color(light.environment, uv, light.picture_lookup, lambda) *
+               LightTablesView::white_of_picture(light.equal_energy, lambda) *
+               (light.scale * intensity_of_white(light.profile, normalize(w).z));
     }
     const auto x = static_cast<std::size_t>(texels.x), y = static_cast<std::size_t>(texels.y);
     return context.tables().texel_radiance(light.environment, y * width + x, lambda) * light.scale;

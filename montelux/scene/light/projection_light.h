@@ -19,8 +19,9 @@ struct ProjectionLight {
     Transform world_from_light;
     Index motion = no_index; // MovableLight
     ProjectionProfile profile = ProjectionProfile::intensity;
-    bool equal_energy =
-        false; // white of the picture is the constant spectrum 1; with the profile `irradiance`
+    // With the profile `irradiance`; white of the picture may be the constant spectrum 1.
+    bool equal_energy = false;
+    PictureLookup picture_lookup = PictureLookup::bilinear;
 
     Point3f position() const { return world_from_light.point(Vec3f()); }
 

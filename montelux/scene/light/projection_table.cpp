@@ -29,16 +29,19 @@ double weighted(const Image& picture, std::size_t texel, Vec3d weights) {
     return sum;
 }
 
-// Of each texel and its neighbours.
-Image blurred(const Image& picture) {
+// The mean of each texel and its neighbours.
+Image blurred(const Image& picture, PictureLookup lookup) {
+    const auto within = [&](int i, int n) {
+        return lookup == PictureLookup::repeating ? (i + n) % n : std::clamp(i, 0, n - 1);
+    };
     Image result(picture.width(), picture.height(), {"R", "G", "B"});
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x)
             for (int c = 0; c < 3; ++c) {
                 float sum = 0;
                 for (int k = 0; k < 9; ++k)
-                    sum += picture.value(std::clamp(x + k % 3 - 1, 0, picture.width() - 1),
-                                         std::clamp(y + k / 3 - 1, 0, picture.height() - 1), c);
+                    sum += picture.value(within(x + k % 3 - 1, picture.width()),
+                                         within(y + k / 3 - 1, picture.height()), c);
                 result.set(x, y, c, sum / 9);
             }
     return result;
@@ -75,11 +78,14 @@ Vec3f ProjectionScreen::direction(Vec2f texels) const {
                            (2 * texels.y / static_cast<float>(height_) - 1) * half_.y, 1));
 }
 
-ProjectionTable::ProjectionTable(const Image& picture, float fov, ProjectionProfile profile)
+ProjectionTable::ProjectionTable(const Image& picture, float fov, ProjectionProfile profile,
+                                 PictureLookup lookup)
     : screen_(picture.width(), picture.height(), fov),
       density_(std::span<const double>(
-                   texel_flux(profile == ProjectionProfile::irradiance ? blurred(picture) : picture, screen_,
-                              profile, Vec3d(1, 1, 1) / 3)),
+                   texel_flux(profile == ProjectionProfile::irradiance && lookup != PictureLookup::nearest
+                                  ? blurred(picture, lookup)
+                                  : picture,
+                              screen_, profile, Vec3d(1, 1, 1) / 3)),
                static_cast<std::uint32_t>(picture.width()), static_cast<std::uint32_t>(picture.height()),
                {0, 0}, {static_cast<double>(picture.width()), static_cast<double>(picture.height())}) {}
 

@@ -7,6 +7,7 @@
 
 #include "montelux/image/image.h"
 #include "montelux/mc/dist/piecewise_2d.h"
+#include "montelux/scene/light/picture_lookup.h"
 
 namespace montelux {
 
@@ -14,7 +15,7 @@ namespace montelux {
 enum class ProjectionProfile : std::uint8_t {
     intensity, // the same in all directions, as in pbrt-v4; the colour is that of the nearest texel
     // The same all over a plane across the axis, as in Mitsuba 3: the intensity is divided by the cubed cosine to the
-    // axis. Colours are bilinear.
+    // axis. Colours are those of a PictureLookup.
     irradiance,
 };
 
@@ -45,7 +46,7 @@ constexpr float intensity_of_white(ProjectionProfile profile, float z) {
 }
 
 // Samples texels in proportion to the mean of their colours times their solid angle and intensity_of_white; where colours
-// are bilinear, of the texels around, too.
+// are interpolated, of the texels around, too.
 class ProjectionTable {
   public:
     struct Sample {
@@ -55,8 +56,8 @@ class ProjectionTable {
     };
 
     // The picture has the channels R, G and B; negative values count as 0.
-    ProjectionTable(const Image& picture, float fov,
-                    ProjectionProfile profile = ProjectionProfile::intensity);
+    ProjectionTable(const Image& picture, float fov, ProjectionProfile profile = ProjectionProfile::intensity,
+                    PictureLookup lookup = PictureLookup::bilinear);
 
     const ProjectionScreen& screen() const { return screen_; }
     std::optional<Sample> sample(Vec2f u) const;

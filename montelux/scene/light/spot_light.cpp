@@ -41,7 +41,7 @@ SampledSpectrum SpotLight::intensity(const LightContext& context, Vec3f w,
     if (picture == no_index) return result;
     const float depth = 2 * dot(w, axis);
     const Point2f place{0.5f + dot(w, picture_x) / depth, 0.5f + dot(w, picture_y) / depth};
-    return result * context.tables().picture_color(picture, {place.x, 1 - place.y}, lambda);
+    return result * context.tables().picture_color(picture, {place.x, 1 - place.y}, picture_lookup, lambda);
 }
 
 SpotLight SpotLight::moved(const Transform& world_from_own) const {

@@ -4,6 +4,7 @@
 #include <cstdint>
 
 #include "montelux/scene/light/light_model.h"
+#include "montelux/scene/light/picture_lookup.h"
 #include "montelux/scene/scene_spectrum.h"
 
 namespace montelux {
@@ -28,9 +29,10 @@ struct SpotLight {
     Index motion = no_index; // MovableLight
     SpotFalloff profile = SpotFalloff::smooth;
     // If given, into Scene::environments: the intensity is multiplied by the colours of this picture, as reflectances
-    // (bilinear). Its column and row along w, as shares of its width and height, are
+    // of surfaces. Its column and row along w, as shares of its width and height, are
     // 1/2 + (dot(w, picture_x), dot(w, picture_y)) / (2 dot(w, axis)).
     Index picture = no_index;
+    PictureLookup picture_lookup = PictureLookup::bilinear;
     Vec3f picture_x{}, picture_y{};
 
     // Share of the intensity along the unit vector w.

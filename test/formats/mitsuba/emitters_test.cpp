@@ -213,6 +213,46 @@ TEST(MitsubaEmitters, Projector) {
     EXPECT_EQ(plain.scene().environments.at(0).value(0, 0, 2), 3);
 }
 
+TEST(MitsubaEmitters, PicturesGoOnBeyondTheirBordersAsTheirTexturesSay) {
+    const std::vector<float> columns{1, 2, 4, 8};
+    struct Case {
+        const char* settings;
+        PictureLookup lookup;
+        float at_the_left_edge;
+    };
+    for (const auto& [settings, lookup, at_the_left_edge] :
+         {Case{"", PictureLookup::repeating, 4.5f},
+          Case{R"(<string name="wrap_mode" value="mirror"/>)", PictureLookup::bilinear, 1},
+          Case{R"(<string name="wrap_mode" value="clamp"/>)", PictureLookup::bilinear, 1},
+          Case{R"(<string name="filter_type" value="nearest"/>)", PictureLookup::nearest, 1}}) {
+        const auto bitmap = [&](const std::string& name) {
+            return "<texture type=\"bitmap\" name=\"" + name +
+                   "\"><string name=\"filename\" value=\"p.pfm\"/>" + settings + "</texture>";
+        };
+        const WholeScene projected =
+            load_scene_text(emitter("projector", bitmap("irradiance")), picture(4, columns));
+        EXPECT_EQ(light<ProjectionLight>(projected).picture_lookup, lookup) << settings;
+        EXPECT_EQ(light<SpotLight>(load_scene_text(emitter("spot", bitmap("texture")), picture(4, columns)))
+                      .picture_lookup,
+                  lookup)
+            << settings;
+        const WholeScene s =
+            load_scene_text("<shape type=\"rectangle\">" + emitter("area", bitmap("radiance")) + "</shape>",
+                            picture(4, columns));
+        const auto& area = light<AreaLight>(s);
+        EXPECT_EQ(area.picture_lookup, lookup) << settings;
+        const SceneTables tables(s.scene());
+        const LightTablesView& lights = LightContext{tables.view(), 0}.tables();
+        const SampledWavelengths lambda = SampledWavelengths::sample_visible(0.4f);
+        const auto color = [&](float u) {
+            return lights.picture_color(area.picture, {u, 0.5f}, lookup, lambda)[0];
+        };
+        EXPECT_NEAR(color(0), at_the_left_edge, 1e-3f) << settings;
+        EXPECT_NEAR(color(0.375f), 2, 1e-3f) << settings;
+        EXPECT_NEAR(color(0.49f), lookup == PictureLookup::nearest ? 2 : 2.92f, 1e-3f) << settings;
+    }
+}
+
 TEST(MitsubaEmitters, PicturesOnSurfaces) {
     const WholeScene s = load_scene_text(R"(<shape type="rectangle"><emitter type="area">
         <texture type="bitmap" name="radiance"><string name="filename" value="p.pfm"/></texture>

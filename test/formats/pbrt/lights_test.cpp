@@ -191,6 +191,17 @@ TEST(PbrtLights, EnvironmentMaps) {
     EXPECT_EQ(w.layout, EnvironmentLayout::equirectangular);
     EXPECT_EQ(of_wide.messages().size(), 1u);
     EXPECT_NEAR(w.scale * white, 10 / (pi / 2), 0.02);
+    Warnings of_odd;
+    d = load("LightSource \"infinite\" \"string filename\" \"odd.exr\" \"string layout\" \"equirectangular\" "
+             "LightSource \"infinite\" \"string filename\" \"map.exr\" \"string layout\" \"equirectangular\"",
+             of_odd);
+    for (const Light& told : d.scene.lights)
+        EXPECT_EQ(std::get<ImageInfiniteLight>(told).layout, EnvironmentLayout::equirectangular);
+    EXPECT_EQ(of_odd.messages().size(), 2u); // odd.exr is black, and map.exr has negative pixels
+    EXPECT_THROW(
+        load("LightSource \"infinite\" \"string filename\" \"odd.exr\" \"string layout\" \"equal-area\"",
+             warnings),
+        Error);
     try {
         load("LightSource \"infinite\" \"string filename\" \"odd.exr\"", warnings);
         ADD_FAILURE() << "a map that is neither square nor twice as wide as high was accepted";

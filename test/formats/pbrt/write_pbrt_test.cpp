@@ -225,6 +225,14 @@ TEST_F(WritePbrt, Lights) {
         Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] Scale 1 1 -1 Shape "disk" AttributeEnd
         ColorSpace "aces2065-1" LightSource "point" LightSource "distant" "rgb L" [0.3 0.4 0.5])";
     EXPECT_EQ(world_round_trip(lights), Texts());
+    write_image(folder_ / "odd.exr", Image(5, 3, {"R", "G", "B"}));
+    for (const char* map : {"odd.exr", "map.exr"}) {
+        const Texts warnings =
+            world_round_trip("LightSource \"infinite\" \"string filename\" \"" + std::string(map) +
+                             "\" \"string layout\" \"equirectangular\"");
+        ASSERT_EQ(warnings.size(), 1u) << map;
+        EXPECT_NE(warnings[0].find("pbrt-v4 refuses"), std::string::npos) << warnings[0];
+    }
 }
 
 TEST_F(WritePbrt, Media) {
@@ -301,7 +309,11 @@ void expect_all_round_trip(const std::filesystem::path& folder) {
         ++whole;
         if (!loaded->scene.sparse_grids.empty()) continue; // SparseGridsBecomeUniformOnes
         try {
-            EXPECT_EQ(expect_round_trip(*loaded).messages(), Texts());
+            Texts warnings = expect_round_trip(*loaded).messages();
+            std::erase_if(warnings, [](const std::string& w) {
+                return w.find("latitude-longitude") != std::string::npos;
+            });
+            EXPECT_EQ(warnings, Texts());
         } catch (const Error& e) {
             ADD_FAILURE() << e.what();
         }
