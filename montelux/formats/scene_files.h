@@ -13,7 +13,7 @@
 namespace montelux {
 
 // Relative names are looked for in the folders that the scene names, the latest one first, in the folder of the main
-// scene file, and in that of the file that mentions them.
+// scene file, and in that of the file that mentions them; where there is none, with slashes in place of backslashes.
 class SceneFiles {
   public:
     // Both must outlive it.

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "montelux/formats/nanovdb_file.h"
+#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/material/material_model.h"
 
 namespace montelux::pbrt {
@@ -85,6 +86,24 @@ std::span<const std::string_view> plugin_names(std::string_view directive) {
         return by_directive;
     }();
     return names.at(directive);
+}
+
+std::string plugin_suggestion(std::string_view directive, std::string_view name) {
+    static const std::map<std::string_view, std::vector<std::string_view>> of_version_3{
+        {"Film", {"image"}},
+        {"Camera", {"environment"}},
+        {"Sampler", {"02sequence", "lowdiscrepancy", "maxmindist", "random"}},
+        {"Integrator", {"directlighting", "whitted"}},
+        {"Shape", {"cone", "heightfield", "hyperboloid", "nurbs", "paraboloid"}},
+        {"Material",
+         {"disney", "fourier", "glass", "kdsubsurface", "matte", "metal", "mirror", "plastic", "substrate",
+          "translucent", "uber"}},
+        {"Texture", {"uv"}},
+        {"MakeNamedMedium", {"heterogeneous"}}};
+    const auto old = of_version_3.find(directive);
+    if (old != of_version_3.end() && std::ranges::find(old->second, name) != old->second.end())
+        return std::string(how_to_upgrade);
+    return did_you_mean(name, plugin_names(directive));
 }
 
 bool is_plugin(std::string_view directive, std::string_view name) {

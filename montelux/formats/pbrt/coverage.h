@@ -23,6 +23,11 @@ std::span<const PluginCoverage> plugin_coverage();
 std::span<const std::string_view> plugin_names(std::string_view directive);
 bool is_plugin(std::string_view directive, std::string_view name);
 
+// What an error about an unknown plugin of the directive adds: how to convert a file for pbrt-v3, or the nearest name.
+std::string plugin_suggestion(std::string_view directive, std::string_view name);
+inline constexpr std::string_view how_to_upgrade =
+    ": the file is for pbrt-v3; 'pbrt --upgrade old.pbrt > new.pbrt' of pbrt-v4 converts it";
+
 // "coateddiffuse" for the material CoatedDiffuse.
 std::string material_type(std::string_view name);
 

@@ -6,7 +6,6 @@
 
 #include "montelux/formats/pbrt/coverage.h"
 #include "montelux/formats/pbrt/subsurface.h"
-#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/material/material_model.h"
 #include "montelux/scene/setting_names.h"
 
@@ -211,8 +210,8 @@ Material make_material(const MaterialDeclaration& d, SceneBuilder& builder, Text
                        MeasuredBrdfLibrary& brdfs, SpectrumReader& spectra, const FindMaterial& find,
                        Diagnostics& diagnostics) {
     if (!is_plugin("Material", d.type) && !is_old_interface(d.type))
-        diagnostics.error(d.at, "unknown material " + in_quotes(d.type) +
-                                    did_you_mean(d.type, plugin_names("Material")));
+        diagnostics.error(d.at,
+                          "unknown material " + in_quotes(d.type) + plugin_suggestion("Material", d.type));
     MaterialMaker maker(d, builder, textures, brdfs, spectra, find, diagnostics);
     if (!is_old_interface(d.type)) return maker.make(d.type);
     diagnostics.warn_once("material " + in_quotes(d.type), d.at,

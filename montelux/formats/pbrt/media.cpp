@@ -312,8 +312,7 @@ Index MediumReader::read(const ParameterList& parameters, const Transform& world
     } else if (*type == "nanovdb") {
         medium = nanovdb(r, world_from_medium);
     } else {
-        r.error("type",
-                "unknown medium " + in_quotes(*type) + did_you_mean(*type, plugin_names("MakeNamedMedium")));
+        r.error("type", "unknown medium " + in_quotes(*type) + plugin_suggestion("MakeNamedMedium", *type));
     }
     r.finish();
     builder_.scene().media.push_back(medium);

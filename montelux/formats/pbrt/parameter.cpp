@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "montelux/formats/number.h"
+#include "montelux/formats/pbrt/coverage.h"
 #include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
@@ -32,7 +33,6 @@ ValueKind kind_of(ParameterType type) {
     }
 }
 
-// The type of a name; accepts pbrt-v3's spellings too.
 ParameterType parse_type(std::string_view name, Location at, const Diagnostics& diagnostics) {
     auto found = std::find(type_names.begin(), type_names.end(), name);
     if (found != type_names.end()) return static_cast<ParameterType>(found - type_names.begin());
@@ -44,7 +44,7 @@ ParameterType parse_type(std::string_view name, Location at, const Diagnostics& 
     for (auto [then, now] : old)
         if (name == then)
             diagnostics.error(at, "parameter type " + in_quotes(name) + " is not of pbrt-v4; expected '" +
-                                      std::string(now) + "'");
+                                      std::string(now) + "'" + std::string(how_to_upgrade));
     diagnostics.error(at, "unknown parameter type " + in_quotes(name) + did_you_mean(name, type_names));
 }
 

@@ -147,8 +147,7 @@ void read_camera(const Plugin& plugin, Files& files, Diagnostics& diagnostics, F
         }
         model = std::move(camera);
     } else {
-        r.error("unknown camera " + in_quotes(plugin.name) +
-                did_you_mean(plugin.name, plugin_names("Camera")));
+        r.error("unknown camera " + in_quotes(plugin.name) + plugin_suggestion("Camera", plugin.name));
     }
     r.finish();
 }

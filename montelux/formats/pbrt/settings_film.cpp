@@ -74,8 +74,8 @@ SpectralSettings read_buckets(ParameterReader& r) {
 
 void read_film(const Plugin& plugin, Diagnostics& diagnostics, FilmSettings& film, std::string& output_file) {
     if (!is_plugin("Film", plugin.name))
-        diagnostics.error(plugin.at, "unknown film " + in_quotes(plugin.name) +
-                                         did_you_mean(plugin.name, plugin_names("Film")));
+        diagnostics.error(plugin.at,
+                          "unknown film " + in_quotes(plugin.name) + plugin_suggestion("Film", plugin.name));
     ParameterReader r(plugin.parameters, "film " + in_quotes(plugin.name), plugin.at, diagnostics);
     if (plugin.name == "spectral") film.spectral = read_buckets(r);
     if (plugin.name == "gbuffer") {
@@ -138,7 +138,7 @@ PixelFilter read_filter(const Plugin& plugin, Diagnostics& diagnostics) {
         filter = TriangleFilter{radius(2)};
     } else {
         r.error("unknown pixel filter " + in_quotes(plugin.name) +
-                did_you_mean(plugin.name, plugin_names("PixelFilter")));
+                plugin_suggestion("PixelFilter", plugin.name));
     }
     r.finish();
     return filter;

@@ -5,7 +5,6 @@
 #include "montelux/formats/pbrt/coverage.h"
 #include "montelux/formats/pbrt/parameter_reader.h"
 #include "montelux/formats/pbrt/settings.h"
-#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/light_tracing_support.h"
 
 namespace montelux::pbrt {
@@ -60,8 +59,7 @@ SamplerSettings read_sampler(const Plugin& plugin, Diagnostics& diagnostics, std
     } else if (plugin.name == "zsobol" || plugin.name == "pmj02bn") {
         s.kind = SamplerKind::sobol_blue_noise;
     } else {
-        r.error("unknown sampler " + in_quotes(plugin.name) +
-                did_you_mean(plugin.name, plugin_names("Sampler")));
+        r.error("unknown sampler " + in_quotes(plugin.name) + plugin_suggestion("Sampler", plugin.name));
     }
     s.spp = read_count(r, "pixelsamples", 16);
     if (plugin.name == "pmj02bn") {
@@ -164,7 +162,7 @@ IntegratorSettings read_integrator(const Plugin& plugin, Diagnostics& diagnostic
                                         std::string(substitute_of(plugin.name)));
     } else {
         r.error("unknown integrator " + in_quotes(plugin.name) +
-                did_you_mean(plugin.name, plugin_names("Integrator")));
+                plugin_suggestion("Integrator", plugin.name));
     }
     return s;
 }

@@ -12,7 +12,6 @@
 #include "montelux/formats/ply.h"
 #include "montelux/mc/math/constants.h"
 #include "montelux/mc/math/error.h"
-#include "montelux/mc/math/nearest_name.h"
 
 namespace montelux::pbrt {
 namespace {
@@ -137,7 +136,7 @@ Geometry read_shape(ParameterReader& r, const std::string& plugin, const Transfo
     else if (plugin == "loopsubdiv")
         mesh = read_loop_subdivision(r, budget);
     else
-        r.error("unknown shape " + in_quotes(plugin) + did_you_mean(plugin, plugin_names("Shape")));
+        r.error("unknown shape " + in_quotes(plugin) + plugin_suggestion("Shape", plugin));
     transform_mesh(mesh, world_from_object, reverse_orientation);
     return mesh;
 }

@@ -30,7 +30,7 @@ void TextureLibrary::declare(std::string_view type, const std::string& name, Tex
                                                "; expected 'float' or 'spectrum'");
     if (!is_plugin("Texture", declaration.plugin))
         diagnostics_.error(declaration.at, "unknown texture " + in_quotes(declaration.plugin) +
-                                               did_you_mean(declaration.plugin, plugin_names("Texture")));
+                                               plugin_suggestion("Texture", declaration.plugin));
     const bool only_float = declaration.plugin == "fbm" || declaration.plugin == "windy" ||
                             declaration.plugin == "wrinkled" || declaration.plugin == "step";
     if (only_float || declaration.plugin == "marble")

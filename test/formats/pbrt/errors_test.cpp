@@ -35,8 +35,12 @@ TEST(PbrtErrors, SentencesInTheWorld) {
          "scene:2:16: expected a parameter as \"type name\", read the string \"float a b\""},
         {"Shape \"sphere\" \"flaot radius\" 1",
          "scene:2:16: unknown parameter type 'flaot' (did you mean 'float'?)"},
-        {"Shape \"sphere\" \"color L\" 1",
-         "scene:2:16: parameter type 'color' is not of pbrt-v4; expected 'rgb'"},
+        {"Shape \"sphere\" \"color L\" 1", "scene:2:16: parameter type 'color' is not of pbrt-v4; expected "
+                                           "'rgb': the file is for pbrt-v3; 'pbrt "
+                                           "--upgrade old.pbrt > new.pbrt' of pbrt-v4 converts it"},
+        {"Material \"matte\"",
+         "scene:2:1: unknown material 'matte': the file is for pbrt-v3; 'pbrt --upgrade "
+         "old.pbrt > new.pbrt' of pbrt-v4 converts it"},
         {"Shape \"sphere\" \"float radius\"",
          "scene:2:30: parameter 'radius': expected a value, read the end of "
          "the file"},
@@ -316,7 +320,9 @@ TEST(PbrtErrors, SentencesBeforeTheWorld) {
          "scene:1:12: parameter 'pixelbounds' has 3 values; expected 4 (x0 x1 y0 y1)"},
         {"Film \"rgb\" \"string sensor\" \"canon_eos_5d_mk2\" WorldBegin",
          "scene:1:12: unknown sensor 'canon_eos_5d_mk2' (did you mean 'canon_eos_5d_mkii'?)"},
-        {"Film \"image\" WorldBegin", "scene:1:1: unknown film 'image'"},
+        {"Film \"image\" WorldBegin",
+         "scene:1:1: unknown film 'image': the file is for pbrt-v3; 'pbrt --upgrade old.pbrt > new.pbrt' of "
+         "pbrt-v4 converts it"},
         {"Film \"spectral\" \"integer nbuckets\" 0 WorldBegin",
          "scene:1:17: parameter 'nbuckets' is 0; expected 1 to 512"},
         {"Film \"spectral\" \"float lambdamax\" 900 WorldBegin",

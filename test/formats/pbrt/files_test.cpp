@@ -103,6 +103,20 @@ TEST_F(PbrtFolder, TextThatUnpacksOutOfProportionIsRefused) {
 }
 
 // X, Y and Z are no grey picture, though there is a Y.
+// Scenes written on Windows.
+TEST_F(PbrtFolder, BackslashesMaySeparateFolders) {
+    std::filesystem::create_directory(folder_ / "sub");
+    write_image(folder_ / "sub/map.exr", Image(2, 2, {"R", "G", "B"}));
+    Warnings warnings;
+    const auto load = [&](const std::string& name) {
+        return parse_pbrt("WorldBegin LightSource \"infinite\" \"string filename\" \"" + name + "\"", "scene",
+                          folder_.path(), warnings);
+    };
+    EXPECT_EQ(load("sub\\\\map.exr").scene.lights.size(), 1u);
+    write_image(folder_ / "sub\\map.exr", Image(4, 4, {"R", "G", "B"})); // its very name comes first
+    EXPECT_EQ(load("sub\\\\map.exr").scene.environments.at(0).width(), 4);
+}
+
 TEST_F(PbrtFolder, PicturesInXyzAreRefused) {
     Image picture(8, 8, {"X", "Y", "Z"});
     for (float& v : picture.f32()) v = 0.5f;
