@@ -52,13 +52,12 @@ void convert_picture(const ConvertSettings& s) {
     ToneOptions tone = s.tone;
     if (!s.layer.empty()) {
         PictureLayer layer = layer_of(image, s.layer, s.input);
-        image = std::move(layer.image);
-        // Directions are shown as R, G, B = (n + 1) / 2, without a curve.
-        if (layer.is_direction && takes_tone_curve(s.output)) {
-            for (float& v : image.f32()) v = (v + 1) / 2;
+        if (layer.values != LayerValues::light && takes_tone_curve(s.output)) {
+            scale_for_screen(layer);
             if (!tone.tone) tone.tone = ToneKind::linear;
             if (!tone.exposure && !tone.automatic) tone.exposure = 0;
         }
+        image = std::move(layer.image);
     } else if (!to_exr && image.find_channel("denoised.R")) {
         image = denoised_picture(image);
     }
@@ -94,12 +93,9 @@ void convert_scene(const ConvertSettings& s) {
                                            "; what is written needs another name");
     const std::vector<std::filesystem::path> written = write_pbrt(description, output, warnings);
     if (s.quiet) return;
-    if (added.camera || added.lights)
+    if (!added.missing().empty())
         std::fprintf(stderr, "montelux: %s has no %s: the studio is written with it\n",
-                     std::filesystem::path(s.input).filename().c_str(),
-                     added.camera && added.lights ? "camera and no lights"
-                     : added.camera               ? "camera"
-                                                  : "lights");
+                     std::filesystem::path(s.input).filename().c_str(), std::string(added.missing()).c_str());
     for (const std::string& w : warnings.messages())
         std::fprintf(stderr, "montelux: warning: %s\n", w.c_str());
     if (warnings.left_out() > 0)

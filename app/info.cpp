@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <system_error>
 #include <type_traits>
@@ -31,6 +32,7 @@ using Json = nlohmann::ordered_json;
 struct InfoSettings {
     std::string file;
     std::map<std::string, std::string> definitions;
+    std::optional<std::string> camera;
     bool json = false;
 };
 
@@ -169,7 +171,10 @@ void print_info(const InfoSettings& settings) {
                                                            ".pic", ".pfm", ".pbm", ".pgm",  ".ppm",
                                                            ".pnm", ".tga", ".bmp", ".rgbe", ".tif"};
     constexpr std::size_t most_bytes = std::size_t{1} << 30; // as of pictures
-    const auto print_scene = [&] { print_scene_info(settings.file, settings.definitions, settings.json); };
+    const auto print_scene = [&] {
+        print_scene_info(settings.file, {.camera = settings.camera, .definitions = settings.definitions},
+                         settings.json);
+    };
     if (has_extension(settings.file, std::array<std::string_view, 2>{".pbrt", ".gz"})) return print_scene();
     const bool is_named_picture = has_extension(settings.file, pictures);
     std::error_code missing;
@@ -200,6 +205,9 @@ void add_info(CLI::App& app, int& exit_code) {
             "A picture (EXR, PNG, JPEG, HDR, PFM, PNM, TGA, BMP), a texture (KTX 2, KTX 1, DDS) or a scene")
         ->required();
     declare_definitions(*command, settings->definitions);
+    command->add_option(
+        "--camera", settings->camera,
+        "Of a glTF or Mitsuba scene: its camera, by name or number from 0. Default: the first");
     command->add_flag("--json", settings->json, "Print JSON");
     command->footer("Examples:\n  montelux info out.exr --json\n  montelux info scene.pbrt");
     command->callback([settings, &exit_code] {

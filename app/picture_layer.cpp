@@ -3,6 +3,9 @@
 #include "app/joined.h"
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <limits>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -14,17 +17,17 @@ namespace {
 
 struct LayerName {
     std::string_view name, channels; // what the names of its channels begin with
-    bool is_direction = false;
+    LayerValues values = LayerValues::light;
 };
 
 // Layers whose channels have another name.
 constexpr std::array<LayerName, 7> other_names = {{{"error", "stderr"},
-                                                   {"normal", "N", true},
-                                                   {"geometric-normal", "Ng", true},
+                                                   {"normal", "N", LayerValues::directions},
+                                                   {"geometric-normal", "Ng", LayerValues::directions},
                                                    {"position", "P"},
                                                    {"relative-variance", "relativeVariance"},
                                                    {"alpha", "A"},
-                                                   {"depth", "depth.Z"}}};
+                                                   {"depth", "depth.Z", LayerValues::depths}}};
 
 // The channels of a layer in the order in which they are shown; empty if there are none.
 std::vector<std::string> channels_of(const Image& image, const std::string& prefix) {
@@ -76,7 +79,7 @@ PictureLayer layer_of(const Image& image, const std::string& name, const std::st
     for (const LayerName& l : other_names)
         if (l.name == name || l.channels == name) {
             prefix = l.channels;
-            layer.is_direction = l.is_direction;
+            layer.values = l.values;
         }
     while (prefix.ends_with('.')) prefix.pop_back();
     const std::vector<std::string> channels = channels_of(image, prefix);
@@ -93,6 +96,22 @@ PictureLayer layer_of(const Image& image, const std::string& name, const std::st
     std::ranges::copy(selected.f32(), layer.image.f32().begin());
     layer.image.attributes() = image.attributes();
     return layer;
+}
+
+void scale_for_screen(PictureLayer& layer) {
+    const std::span<float> values = layer.image.f32();
+    if (layer.values == LayerValues::directions)
+        for (float& v : values) v = (v + 1) / 2;
+    if (layer.values != LayerValues::depths) return;
+    const auto is_surface = [](float depth) { return depth > 0 && std::isfinite(depth); };
+    float nearest = std::numeric_limits<float>::infinity(), farthest = 0;
+    for (const float depth : values)
+        if (is_surface(depth)) {
+            nearest = std::min(nearest, depth);
+            farthest = std::max(farthest, depth);
+        }
+    const float range = farthest - nearest;
+    for (float& v : values) v = !is_surface(v) ? 0 : range > 0 ? (farthest - v) / range : 1;
 }
 
 } // namespace montelux::app

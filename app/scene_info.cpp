@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "montelux/formats/load_scene.h"
+#include "montelux/formats/named_cameras.h"
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/scene/light/light_tables.h"
 #include "montelux/scene/memory_use.h"
@@ -110,6 +111,9 @@ Json describe_scene(const std::string& file, const SceneDescription& d, const Wa
     out["camera"] = {{"kind", camera_name(s.camera.model)},
                      {"position", vector_json(s.camera.world_from_camera.point(Vec3d()))},
                      {"moves", s.camera.motion.has_value()}};
+    out["cameras"] = d.camera_names;
+    out["variants"] = d.variant_names;
+    out["animations"] = d.animation_names;
     if (const auto* p = std::get_if<PerspectiveCamera>(&s.camera.model))
         out["camera"]["fov"] = json_number(double{p->fov});
     out["film"] = {{"width", d.film.width},
@@ -184,6 +188,13 @@ void print_text(const Json& j) {
     print_line("media", list_of(j["media"]));
     print_line("camera", j["camera"]["kind"].get<std::string>() + " at " + point_of(j["camera"]["position"]) +
                              (j["moves"].get<bool>() ? ", with motion in the scene" : ""));
+    const auto choices = [&](const char* of) { return j[of].get<std::vector<std::string>>(); };
+    if (choices("cameras").size() > 1)
+        print_line("cameras", numbered_names(choices("cameras")) + " (--camera)");
+    if (!choices("variants").empty())
+        print_line("variants", numbered_names(choices("variants")) + " (--variant)");
+    if (!choices("animations").empty())
+        print_line("animations", numbered_names(choices("animations")) + " (--frames)");
     print_line("film", j["film"]["width"].dump() + " x " + j["film"]["height"].dump() + " pixels, filter " +
                            j["film"]["filter"].get<std::string>() + ", sensor " +
                            j["film"]["sensor"].get<std::string>());
@@ -206,12 +217,11 @@ void print_text(const Json& j) {
 
 } // namespace
 
-void print_scene_info(const std::string& file, const std::map<std::string, std::string>& definitions,
-                      bool json) {
+void print_scene_info(const std::string& file, LoadOptions options, bool json) {
     Warnings warnings;
     std::vector<std::filesystem::path> files;
-    const SceneDescription description =
-        load_scene(file, warnings, {.files_read = &files, .definitions = definitions});
+    options.files_read = &files;
+    const SceneDescription description = load_scene(file, warnings, options);
     const Json out = describe_scene(file, description, warnings, files);
     if (json)
         std::printf("%s\n", out.dump(2, ' ', false, Json::error_handler_t::replace).c_str());

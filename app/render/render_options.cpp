@@ -142,14 +142,14 @@ void declare(CLI::App& c, RenderOptions& o) {
     add_parsed(c, "--crop", "x0,x1,y0,y1", o.crop, parse_crop,
                "Render a part of the film alone, as fractions from the top left");
     add_parsed(
-        c, "--environment", "FILE", o.studio.environment,
+        c, "--environment", "studio|none|FILE", o.studio.environment,
         [](const std::string& option, const std::string& s) {
-            if (s.empty()) refuse(option, s, "the file of an environment map, or none, is expected");
+            if (s.empty()) refuse(option, s, "the file of an environment map, studio or none is expected");
             return s;
         },
-        "Environment map that lights the scene, in place of its infinite lights: latitude-longitude or "
-        "square "
-        "equal-area; none: no such light");
+        "What lights the scene all around, in place of its infinite lights: the studio's light, nothing, or "
+        "a "
+        "map, latitude-longitude or square equal-area. Default: the scene's own; studio for models and glTF");
     add_parsed(c, "--orbit", "AZ,EL[,DIST]", o.studio.orbit, read_orbit,
                "A camera that frames the scene, in place of its own, from this azimuth and elevation "
                "(degrees) and, in "

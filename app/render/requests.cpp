@@ -75,11 +75,9 @@ void LoadNotices::print(const std::string& scene, const Warnings& warnings, cons
     if (warnings.left_out() > 0)
         print_once("montelux: warning: " + std::to_string(warnings.left_out()) +
                    " more warnings were left out");
-    if (!added.camera && !added.lights) return;
+    if (added.missing().empty()) return;
     print_once("montelux: " + std::filesystem::path(scene).filename().string() + " has no " +
-               (added.camera && added.lights ? "camera and no lights"
-                : added.camera               ? "camera"
-                                             : "lights") +
+               std::string(added.missing()) +
                ": a studio was added (--environment, --orbit, --ground, --background change it)");
 }
 

@@ -46,6 +46,7 @@ SceneDescription model_description() {
     d.integrator.environment_lookup = EnvironmentLookup::bilinear; // the studio's light has no edges
     d.has_camera = d.has_lights = false;
     d.wants_studio = true;
+    d.up = {0, 1, 0};
     return d;
 }
 

@@ -185,7 +185,8 @@ Vec3d up_axis_of(const CameraSettings& camera) {
 }
 
 OrbitFrame orbit_frame_of(const SceneDescription& d) {
-    if (d.wants_studio || !d.has_camera) return OrbitFrame::of(Vec3d(d.up));
+    if (d.up) return OrbitFrame::of(Vec3d(*d.up));
+    if (!d.has_camera) return OrbitFrame::of({0, 1, 0});
     return OrbitFrame::of(up_axis_of(d.scene.camera), !d.scene.camera.world_from_camera.swaps_handedness());
 }
 
@@ -246,21 +247,20 @@ StudioParts add_studio(SceneDescription& d, const StudioSettings& settings, File
     const bool unlit = d.wants_studio && !d.has_lights;
     added.camera = d.wants_studio && !d.has_camera;
     added.lights = unlit && !settings.environment;
+    const bool studio_lit = added.lights || settings.environment == "studio";
     const OrbitFrame frame = orbit_frame_of(d);
     const Bounds3 bounds = settings.bounds ? *settings.bounds : bounds_of(d.scene);
     const bool ground = settings.ground.value_or(unlit && added.camera);
     if (bounds.empty() && (ground || added.camera || settings.orbit))
         throw Error("studio", "the scene has no shape to put the camera or the ground at");
 
-    if (settings.environment) {
-        remove_infinite_lights(d.scene);
-        if (*settings.environment != "none") {
-            const std::filesystem::path path = *settings.environment;
-            if (files_read != nullptr) files_read->push_back(path);
-            add_map(builder, read_image(read_unpacked(files, path), path.string()), path.string(), frame);
-        }
-    } else if (added.lights) {
+    if (settings.environment) remove_infinite_lights(d.scene);
+    if (studio_lit) {
         add_map(builder, studio_light(), "the studio's light", frame);
+    } else if (settings.environment && *settings.environment != "none") {
+        const std::filesystem::path path = *settings.environment;
+        if (files_read != nullptr) files_read->push_back(path);
+        add_map(builder, read_image(read_unpacked(files, path), path.string()), path.string(), frame);
     }
     if (added.camera || settings.orbit) {
         const double aspect = static_cast<double>(d.film.width) / d.film.height;
@@ -276,7 +276,7 @@ StudioParts add_studio(SceneDescription& d, const StudioSettings& settings, File
     if (settings.background) {
         d.integrator.background = settings.background->color;
         if (settings.background->transparent) d.film.layers.set.add(Layer::alpha);
-    } else if (added.lights) {
+    } else if (studio_lit) {
         // The ground's own shade, so that no horizon shows.
         const auto shade = static_cast<float>(ground_radiance);
         d.integrator.background = Vec3f{shade, shade, shade};

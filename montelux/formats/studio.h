@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "montelux/formats/file_source.h"
@@ -15,6 +16,11 @@ namespace montelux {
 // What a studio has added to a scene for want of it.
 struct StudioParts {
     bool camera = false, lights = false;
+    // "camera and no environment", as a sentence with "has no" says it; empty if nothing was added.
+    std::string_view missing() const {
+        if (camera) return lights ? "camera and no environment" : "camera";
+        return lights ? "environment" : "";
+    }
 };
 
 // Field of view of the studio's camera, over the shorter axis of the film.

@@ -8,6 +8,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "montelux/mc/random/sampler_settings.h"
 #include "montelux/scene/film/film_settings.h"
@@ -125,11 +126,14 @@ struct SceneDescription {
     IntegratorSettings integrator;
     std::string output_file; // the file's own name; may be empty
     bool has_camera = true;  // false: the file has none
-    bool has_lights =
-        true; // false: the file has none, or only surfaces that glow without being meant as lamps
-    // Of models rather than scenes: what the file lacks is added by a studio (formats/studio.h).
+    // False: the file has no lights, or those of glTF, in whose format nothing lights a scene all around.
+    bool has_lights = true;
+    // What the file lacks of camera and light is added by a studio (formats/studio.h).
     bool wants_studio = false;
-    Vec3f up{0, 1, 0}; // of a model, or of a scene without a camera; a unit vector along an axis
+    // Where the format says which axis points up, that unit vector; else the camera tells.
+    std::optional<Vec3f> up{};
+    // What the file offers to choose from; names may be empty.
+    std::vector<std::string> camera_names{}, variant_names{}, animation_names{};
     // Of a scene loaded at a time of its animations: the time of their last key, seconds; 0: it has none.
     double animation_end = 0;
 };

@@ -195,8 +195,8 @@ def load(
     by warnings, and in `scene.warnings`. With `texture_memory`, image textures are kept in a temporary file, of which
     about this many bytes are in memory.
 
-    A model without camera and lights gets those of a studio. `environment` is a map that lights any scene in place of
-    its infinite lights ("none": no such light); `orbit` a camera that frames it, (azimuth, elevation) in degrees or
+    A model without camera and environment gets those of a studio. `environment` is a map that lights any scene in place
+    of its infinite lights ("studio": the studio's, "none": no such light); `orbit` a camera that frames it, (azimuth, elevation) in degrees or
     (azimuth, elevation, distance) with the distance in multiples of the framing one; `ground` a disc below it that
     catches its shadow; `background` what the camera sees where it meets nothing: "transparent" (layer "alpha"),
     "black", "grey", "white", "#rrggbb", or linear (r, g, b).

@@ -247,6 +247,8 @@ void bind_views(nb::module_& m) {
         "an angle between 0 and 180 degrees", "Field of view in degrees, over the shorter axis.");
     auto orthographic = value_class<OrthographicCamera>(m, "OrthographicCamera", "Parallel rays.");
     projective(orthographic);
+    number(orthographic, "scale", &OrthographicCamera::scale, positive, "a number above zero",
+           "Half the height of the view, or half its width where that is shorter; times a screen_window.");
     auto spherical = value_class<SphericalCamera>(m, "SphericalCamera", "Every direction.");
     placed(spherical);
     choice(spherical, "mapping", &SphericalCamera::mapping, mappings, "'equal_area' or 'equirectangular'.");

@@ -109,6 +109,9 @@ class Pictures(ProgramTest):
         for layer in "mean", "error", "albedo", "normal", "depth", "samples", "stderr", "N":
             self.expect(0, "l.png", f"convert ok.exr l.png --layer {layer}")
         self.expect(0, "3 channels", "info l.png")
+        self.expect(0, "d.png", "convert ok.exr d.png --layer depth")
+        (channel,) = self.json("info d.png")["channels"]
+        self.assertEqual((channel["minimum"], channel["maximum"]), (0, 1))  # whatever the unit of length
         text = self.expect(1, "there is no layer 'albdo' (did you mean 'albedo'?); there are mean, ",
                            "convert ok.exr x.png --layer albdo")  # fmt: skip
         self.assertIn("error", text.partition("there are mean")[2])
@@ -130,6 +133,10 @@ NamedMaterial "red" {SKY} Shape "loopsubdiv" "integer levels" 4 "point3 P" [0 0 
         scene("ok", f'{SKY} Material "diffuse" Shape "sphere"', 16, 12, 4)
         cls.quietly("render ok.pbrt -o ok.png")
         write("model.gltf", json.dumps(TEXTURED_TRIANGLE))
+        eye = {"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}
+        nodes = [{"camera": 0, "name": "front", "translation": [0, 0, 5]},
+                 {"camera": 0, "name": "plan", "translation": [0, 7, 0]}]  # fmt: skip
+        write("two.gltf", json.dumps({"asset": {"version": "2.0"}, "cameras": [eye], "nodes": nodes}))
         pfm("square.pfm", 2, 2, 1)
         os.mkdir("other")
         cls.expect(0, "other/again.pbrt: 1 shapes, 1 lights, 1 files in other/again-files",
@@ -142,7 +149,7 @@ NamedMaterial "red" {SKY} Shape "loopsubdiv" "integer levels" 4 "point3 P" [0 0 
     """)
     # Extended pbrt syntax describes textured models completely.
     test_converted_model_has_the_same_picture = steps("""
-        0 model.gltf has no camera and no lights: the studio is written with it $ convert model.gltf model.pbrt
+        0 model.gltf has no camera and no environment: the studio is written with it $ convert model.gltf model.pbrt
         0 model.exr $ render model.gltf --spp 4 --resolution 32x24 -o model.pfm -o model.exr
         0 model.again $ render model.pbrt --spp 4 --resolution 32x24 -o model.again.pfm
         model.pfm == model.again.pfm
@@ -160,10 +167,14 @@ NamedMaterial "red" {SKY} Shape "loopsubdiv" "integer levels" 4 "point3 P" [0 0 
         0 shapes       1 triangle mesh & lights       1 uniform sky $ info full.pbrt
         0 "primitives": 1024 & "strategy": "mis" $ info full.pbrt --json
         0 1024 primitives $ info noname
+        0 cameras      0 'front', 1 'plan' (--camera) & camera       perspective at 0 0 5 $ info two.gltf
+        0 camera       perspective at 0 7 0 $ info two.gltf --camera plan
+        1 there is no camera 'plam' (did you mean 'plan'?); expected 0 'front', 1 'plan' $ info two.gltf --camera plam
     """)
 
     def test_converted_model_gives_the_same_picture(self):
-        self.assertNotIn("warning", self.expect(0, "", "convert model.gltf whole.pbrt"))
+        text = self.expect(0, "its map is latitude-longitude, which pbrt-v4 refuses", "convert model.gltf whole.pbrt")
+        self.assertEqual(text.count("warning"), 1)
 
     def test_info_of_textures(self):
         self.take("""

@@ -269,7 +269,7 @@ class Models(ProgramTest):
         write("lamp.obj", "mtllib models/m.mtl\n" + TENT.replace("f 1 2 3 4", "usemtl lamp\nf 1 2 3 4"))
 
     test_studio_is_added = steps(f"""
-        0 montelux: tent.obj has no camera and no lights: a studio was added (--environment, --orbit, --ground,\
+        0 montelux: tent.obj has no camera and no environment: a studio was added (--environment, --orbit, --ground,\
  --background change it) & 32 x 24 pixels, 8 samples per pixel $ {SHOT} -o a.exr -o a.png
         0 "background" $ info a.exr
         a.exr ~ studio.exr

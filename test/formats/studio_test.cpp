@@ -153,6 +153,30 @@ TEST_F(Studio, TurntablesAreOrbits) {
     }
 }
 
+// Mitsuba's scenes have the axis up that their camera has; without a camera it is y.
+TEST_F(Studio, OrbitsOfMitsubaScenesStandAsTheirCameras) {
+    const auto scene = [&](const std::string& sensor) {
+        return load_scene(
+            folder_.write("a.xml", "<scene version=\"3.0.0\">" + sensor +
+                                       "<emitter type=\"constant\"/><shape type=\"sphere\"/></scene>"),
+            warnings_);
+    };
+    const auto looking = [](const std::string& from, const std::string& up) {
+        return "<sensor type=\"perspective\"><transform name=\"to_world\"><lookat origin=\"" + from +
+               "\" target=\"0, 0, 0.5\" up=\"" + up + "\"/></transform></sensor>";
+    };
+    const auto from_above = [&](SceneDescription d) {
+        add(d, {.orbit = Orbit{0, 80}});
+        return d.scene.camera.world_from_camera.point(Vec3d());
+    };
+    const SceneDescription upright = scene(looking("2, -5, 2.6", "0, 0, 1"));
+    EXPECT_GT(from_above(upright).z, 3);
+    EXPECT_NEAR(turn_axis_of(upright).direction.z, 1, 1e-9);
+    EXPECT_GT(from_above(scene(looking("2, 2.6, 5", "0, 1, 0"))).y, 3);
+    EXPECT_LT(from_above(scene(looking("5, 1, 2", "0, -1, 0"))).y, -3);
+    EXPECT_GT(from_above(scene("")).y, 3);
+}
+
 TEST_F(Studio, MovingCamerasTurnWithTheirPath) {
     SceneDescription d = model();
     add(d);

@@ -51,6 +51,15 @@ TEST(Camera, IsPlacedByItsTransform) {
     EXPECT_NEAR(length(top.d), 1, 1e-6);
 }
 
+// The shorter side of the film covers [-3, 3], whatever its shape.
+TEST(Camera, OrthographicScale) {
+    for (const auto& [width, height] : {std::pair{200, 100}, std::pair{100, 300}}) {
+        const Camera camera({OrthographicCamera{.scale = 3}, {}}, width, height);
+        const double pixel = 6.0 / std::min(width, height);
+        expect_vec(camera.generate_ray({0, 0}, pinhole).o, {-0.5 * width * pixel, 0.5 * height * pixel, 0});
+    }
+}
+
 TEST(Camera, OrthographicRaysAreParallel) {
     Transform t = Transform::translate({0, 0, -7}) * Transform::scale({3, 3, 3});
     Camera camera({OrthographicCamera{}, t}, 200, 100);

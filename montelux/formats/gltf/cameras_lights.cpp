@@ -1,11 +1,10 @@
 #include "montelux/formats/gltf/cameras_lights.h"
 
 #include <algorithm>
-#include <charconv>
 #include <cmath>
 
+#include "montelux/formats/named_cameras.h"
 #include "montelux/mc/math/constants.h"
-#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/build/float_range.h"
 
 namespace montelux::gltf {
@@ -66,27 +65,7 @@ CameraModel orthographic(const Value& source, FilmSettings& film) {
     if (!(x > 0)) xmag.error("0 is no width");
     if (!(y > 0)) ymag.error("0 is no height");
     set_shape(x / y, o, film);
-    const auto fx = static_cast<float>(x), fy = static_cast<float>(y);
-    return OrthographicCamera{.screen_window = ScreenWindow{-fx, fx, -fy, fy}};
-}
-
-const PlacedCamera& find_camera(const std::vector<PlacedCamera>& cameras, const std::string& asked,
-                                const Value& root) {
-    for (const PlacedCamera& c : cameras)
-        if (c.name == asked) return c;
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(asked.data(), asked.data() + asked.size(), number);
-    if (error == std::errc() && end == asked.data() + asked.size() && number < cameras.size())
-        return cameras[number];
-    std::vector<std::string_view> names;
-    std::string list;
-    for (std::size_t i = 0; i < cameras.size(); ++i) {
-        names.emplace_back(cameras[i].name);
-        list += (i == 0 ? "" : ", ") + std::to_string(i) +
-                (cameras[i].name.empty() ? "" : " " + in_quotes(cameras[i].name));
-    }
-    root.error("there is no camera " + in_quotes(asked) + did_you_mean(asked, names) +
-               (cameras.empty() ? "; the scene has none" : "; expected " + list));
+    return OrthographicCamera{.scale = static_cast<float>(std::min(x, y))};
 }
 
 } // namespace
@@ -94,8 +73,15 @@ const PlacedCamera& find_camera(const std::vector<PlacedCamera>& cameras, const 
 void choose_camera(const std::vector<PlacedCamera>& cameras, const std::optional<std::string>& asked,
                    const Value& root, SceneDescription& description) {
     description.has_camera = !cameras.empty();
+    for (const PlacedCamera& camera : cameras) description.camera_names.push_back(camera.name);
     if (!asked && cameras.empty()) return;
-    const PlacedCamera& chosen = asked ? find_camera(cameras, *asked, root) : cameras.front();
+    std::size_t number = 0;
+    if (asked) {
+        const std::optional<std::size_t> found = find_camera(description.camera_names, *asked);
+        if (!found) root.error(no_such_camera(description.camera_names, *asked));
+        number = *found;
+    }
+    const PlacedCamera& chosen = cameras[number];
     const Value type = chosen.camera.required("type");
     if (type.text() == "perspective")
         description.scene.camera.model = perspective(chosen.camera, description.film);

@@ -18,9 +18,7 @@ const nlohmann::json& no_json() {
 
 std::optional<std::uint64_t> find_variant(const Value& root, const std::optional<std::string>& name) {
     if (!name) return std::nullopt;
-    std::vector<std::string> names;
-    if (const std::optional<Value> all = root.extension("KHR_materials_variants"))
-        for (const Value& variant : all->elements("variants")) names.push_back(variant.text("name", ""));
+    const std::vector<std::string> names = variant_names(root);
     std::string list;
     for (std::size_t i = 0; i < names.size(); ++i) {
         if (names[i] == *name) return i;
@@ -38,10 +36,13 @@ FloatParameter alpha_of(const Value& source, const Value& base, TextureLibrary& 
     if (std::ranges::find(modes, std::string_view(mode)) == modes.end())
         source.required("alphaMode").error("unknown mode " + in_quotes(mode) + did_you_mean(mode, modes));
     if (mode == "OPAQUE") return {1};
-    const std::optional<Value> factors = base.find("baseColorFactor");
+    const std::optional<Value> glossy = source.extension(specular_glossiness);
+    const Value& colors = glossy ? *glossy : base;
+    const std::string name = glossy ? "diffuse" : "baseColor";
+    const std::optional<Value> factors = colors.find(name + "Factor");
     const auto factor = factors ? static_cast<float>(factors->numbers(4)[3]) : 1.0f;
     const FloatParameter alpha =
-        textures.number(base.find("baseColorTexture"), factor, ImageChannels::alpha, vertices.opacities);
+        textures.number(colors.find(name + "Texture"), factor, ImageChannels::alpha, vertices.opacities);
     if (mode == "BLEND") return alpha;
     const auto cutoff = static_cast<float>(source.number("alphaCutoff", 0.5, 0));
     if (alpha.is_constant()) return {alpha.value >= cutoff ? 1.0f : 0.0f};
@@ -89,6 +90,13 @@ Index medium_of(const Value& source, SceneBuilder& builder) {
 }
 
 } // namespace
+
+std::vector<std::string> variant_names(const Value& root) {
+    std::vector<std::string> names;
+    if (const std::optional<Value> all = root.extension("KHR_materials_variants"))
+        for (const Value& variant : all->elements("variants")) names.push_back(variant.text("name", ""));
+    return names;
+}
 
 MaterialLibrary::MaterialLibrary(Document& document, SceneBuilder& builder,
                                  const std::optional<std::string>& variant, bool pictures)

@@ -23,6 +23,9 @@ struct SurfaceLook {
     UvSets uv_sets{};
 };
 
+// Of KHR_materials_variants; may be empty.
+std::vector<std::string> variant_names(const Value& root);
+
 class MaterialLibrary {
   public:
     // `variant`: of KHR_materials_variants; an Error if the file does not have it. `pictures`: LoadOptions::pictures.

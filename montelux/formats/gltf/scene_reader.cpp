@@ -25,12 +25,15 @@ SceneReader::SceneReader(Document& document, SceneDescription& description, cons
     if (options.shutter > 0 && !channels_.empty())
         end_pose_.emplace(document, channels_, *options.time + options.shutter);
     description.animation_end = gltf::end_of(document, channels_);
+    for (const Value& animation : document.all("animations"))
+        description.animation_names.push_back(animation.text("name", ""));
+    description.variant_names = variant_names(document.root());
     if (const std::optional<Value> all = document.root().extension("KHR_lights_punctual"))
         lights_ = all->elements("lights");
 }
 
 void SceneReader::read() {
-    for (const std::size_t node : nodes_shown()) visit(node);
+    for (const SceneNode node : nodes_of_scene()) visit(node);
     place_meshes();
     choose_camera(cameras_, options_.camera, document_.root(), description_);
     if (description_.scene.shapes.empty()) document_.diagnostics().warn("", "the scene has no meshes");
@@ -43,11 +46,11 @@ void SceneReader::read() {
     }
 }
 
-std::vector<std::size_t> SceneReader::nodes_shown() {
+std::vector<SceneReader::SceneNode> SceneReader::nodes_of_scene() {
     const std::vector<Value>& scenes = document_.all("scenes");
-    std::vector<std::size_t> order;
+    std::vector<SceneNode> order;
     if (scenes.empty()) {
-        order = pose_.roots();
+        for (const std::size_t root : pose_.roots()) order.push_back({root, true});
     } else {
         const std::optional<Value> chosen = document_.root().find("scene");
         const Value& scene = chosen ? document_.refer(*chosen, "scenes", "scene") : scenes.front();
@@ -56,33 +59,37 @@ std::vector<std::size_t> SceneReader::nodes_shown() {
                                                               std::to_string(scenes.size()) + " scenes");
         for (const Value& root : scene.elements("nodes")) {
             document_.refer(root, "nodes", "node");
-            order.push_back(root.whole());
+            order.push_back({root.whole(), true});
         }
     }
-    std::vector<char> seen(document_.all("nodes").size(), 0);
-    std::vector<std::size_t> result;
+    const std::vector<Value>& nodes = document_.all("nodes");
+    std::vector<char> seen(nodes.size(), 0);
+    std::vector<SceneNode> result;
     for (std::size_t k = 0; k < order.size(); ++k) {
-        const std::size_t node = order[k];
-        if (std::exchange(seen[node], 1) != 0) continue;
+        SceneNode node = order[k];
+        if (std::exchange(seen[node.number], 1) != 0) continue;
+        if (const std::optional<Value> own = nodes[node.number].extension("KHR_node_visibility"))
+            node.is_visible = node.is_visible && own->boolean("visible", true);
         result.push_back(node);
-        order.insert(order.end(), pose_.children(node).begin(), pose_.children(node).end());
+        for (const std::size_t child : pose_.children(node.number)) order.push_back({child, node.is_visible});
     }
     return result;
 }
 
-void SceneReader::visit(std::size_t i) {
+void SceneReader::visit(SceneNode which) {
+    const std::size_t i = which.number;
     const Value& node = document_.all("nodes")[i];
     if (const std::optional<Value> index = node.find("camera")) {
         const Value& camera = document_.refer(*index, "cameras", "camera");
         cameras_.push_back({camera, node.text("name", camera.text("name", "")), place_of(i), node});
     }
+    if (!which.is_visible) return;
     if (const std::optional<Value> extension = node.extension("KHR_lights_punctual")) {
         const Value index = extension->required("light");
         if (index.whole() >= lights_.size())
             index.error("light " + std::to_string(index.whole()) + " does not exist (there are " +
                         std::to_string(lights_.size()) + ")");
         add_light(lights_[index.whole()], place_of(i), node, builder_);
-        description_.has_lights = true;
     }
     const std::optional<Value> mesh = node.find("mesh");
     if (!mesh) return;

@@ -31,9 +31,13 @@ class SceneReader {
         Placement place;
     };
 
+    struct SceneNode {
+        std::size_t number;
+        bool is_visible; // its meshes and lights are, whereas cameras always count
+    };
     // The nodes of the chosen scene, parents before children.
-    std::vector<std::size_t> nodes_shown();
-    void visit(std::size_t node);
+    std::vector<SceneNode> nodes_of_scene();
+    void visit(SceneNode node);
     void add_gpu_instances(const Value& instancing, std::size_t node, std::uint64_t mesh);
     void place_meshes();
     void place_deformed(const Value& mesh, const MeshUse& use);

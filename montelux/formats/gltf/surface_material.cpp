@@ -7,8 +7,9 @@
 namespace montelux::gltf {
 namespace {
 
-Vec3f base_color_factor(const Value& base) {
-    const std::optional<Value> factors = base.find("baseColorFactor");
+// RGB of a factor with alpha.
+Vec3f color_factor(const Value& base, const std::string& key) {
+    const std::optional<Value> factors = base.find(key);
     if (!factors) return {1, 1, 1};
     const std::vector<double> f = factors->numbers(4);
     for (std::size_t i = 0; i < 4; ++i)
@@ -41,7 +42,9 @@ UvSets uv_sets_of(const Value& source) {
     const Value* chosen = &found.front();
     const bool emits = !source.extension("KHR_materials_unlit") && source.find("emissiveTexture");
     for (const Value& info : found)
-        if (info.pointer().ends_with(emits ? "/emissiveTexture" : "/baseColorTexture")) chosen = &info;
+        if (info.pointer().ends_with(emits ? "/emissiveTexture" : "/baseColorTexture") ||
+            (!emits && info.pointer().ends_with("/diffuseTexture")))
+            chosen = &info;
     UvSets sets{TextureLibrary::uv_set(*chosen), {}};
     for (const Value& info : found) {
         const std::uint64_t set = TextureLibrary::uv_set(info);
@@ -64,11 +67,10 @@ class SurfaceReader {
         : source_(source), base_(base), textures_(textures), builder_(builder) {}
 
     PrincipledMaterial read(bool vertices) {
-        m_.base_color = textures_.color(base_.find("baseColorTexture"), base_color_factor(base_),
-                                        RgbMeaning::albedo, vertices);
-        const std::optional<Value> map = base_.find("metallicRoughnessTexture");
-        m_.metallic = textures_.number(map, unit(base_, "metallicFactor", 1), ImageChannels::blue);
-        m_.roughness = textures_.number(map, unit(base_, "roughnessFactor", 1), ImageChannels::green);
+        if (const std::optional<Value> glossy = source_.extension(specular_glossiness))
+            read_specular_glossiness(*glossy, vertices);
+        else
+            read_metallic_roughness(vertices);
         if (const std::optional<Value> normals = source_.find("normalTexture"))
             m_.detail.normal_map = textures_.normal_map(*normals);
         with("KHR_materials_ior", [&](const Value& e) {
@@ -116,6 +118,30 @@ class SurfaceReader {
         std::vector<FloatTexture>& all = builder_.scene().float_textures;
         all.push_back(node);
         return {0, static_cast<Index>(all.size() - 1)};
+    }
+
+    void read_metallic_roughness(bool vertices) {
+        m_.base_color = textures_.color(base_.find("baseColorTexture"),
+                                        color_factor(base_, "baseColorFactor"), RgbMeaning::albedo, vertices);
+        const std::optional<Value> map = base_.find("metallicRoughnessTexture");
+        m_.metallic = textures_.number(map, unit(base_, "metallicFactor", 1), ImageChannels::blue);
+        m_.roughness = textures_.number(map, unit(base_, "roughnessFactor", 1), ImageChannels::green);
+    }
+
+    // A dielectric of infinite index, whose reflectance along the normal is the specular colour; roughness is 1 -
+    // glossiness (KHR_materials_ior, "Conversion from specular-glossiness").
+    void read_specular_glossiness(const Value& e, bool vertices) {
+        m_.base_color = textures_.color(e.find("diffuseTexture"), color_factor(e, "diffuseFactor"),
+                                        RgbMeaning::albedo, vertices);
+        m_.metallic = {0};
+        m_.ior = {0};
+        const std::optional<Value> map = e.find("specularGlossinessTexture");
+        m_.specular_color = textures_.color(map, e.color("specularFactor", {1, 1, 1}), RgbMeaning::albedo);
+        const float glossiness = unit(e, "glossinessFactor", 1);
+        m_.roughness = {1 - glossiness};
+        if (map)
+            m_.roughness = add(MixTexture<FloatParameter>{
+                {1}, {1 - glossiness}, textures_.number(map, 1, ImageChannels::alpha)});
     }
 
     // R and G of the texture are the direction, B the strength.

@@ -1,8 +1,11 @@
 #include "montelux/formats/gltf/textures.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
+#include "montelux/formats/gltf/uri.h"
 #include "montelux/image/image_read.h"
 #include "montelux/mc/math/error.h"
 
@@ -75,6 +78,18 @@ Image alpha_channel_of(const Image& picture) {
     return alpha;
 }
 
+// One texel, without effect but for colours, which are magenta.
+template <typename Use>
+Image missing_picture(Use use) {
+    std::array<std::uint8_t, 3> texel{255, 255, 255};
+    if (use == Use::color) texel = {255, 0, 255};
+    if (use == Use::normal) texel = {128, 128, 255};
+    if (use == Use::emission) texel = {0, 0, 0};
+    Image picture(1, 1, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb());
+    std::ranges::copy(texel, picture.u8().begin());
+    return picture;
+}
+
 // Memory of pictures counts less than that of meshes: flat ones are well packed.
 constexpr double share_of_pictures = 1.0 / 16;
 
@@ -100,14 +115,23 @@ Value TextureLibrary::source_of(const Value& texture) {
     texture.error("has no 'source'");
 }
 
-Image TextureLibrary::read_picture(const Value& index) {
-    if (!pictures_) return {1, 1, {"R", "G", "B"}, PixelFormat::u8, ColorEncoding::srgb()};
+Image TextureLibrary::read_picture(const Value& index, Use use) {
+    if (!pictures_) return missing_picture(use);
     const Value& source = document_.refer(index, "images", "image");
     std::vector<std::uint8_t> read;
     std::span<const std::uint8_t> bytes;
     std::string name = source.diagnostics().file() + ": " + source.pointer();
     if (const std::optional<Value> uri = source.find("uri")) {
-        read = document_.read(*uri);
+        try {
+            read = document_.read(*uri);
+        } catch (const Error& e) {
+            if (is_data_uri(uri->text())) throw;
+            const std::string reason = e.what(), place = name + "/uri: ";
+            uri->warn(
+                reason.substr(reason.starts_with(place) ? place.size() : 0) +
+                (use == Use::color ? "; magenta stands for the picture" : "; the material is without it"));
+            return missing_picture(use);
+        }
         bytes = read;
     } else {
         bytes = document_.view(source.required("bufferView"));
@@ -127,11 +151,11 @@ Index TextureLibrary::image(const Value& texture, Use use) {
     const Value source = source_of(texture);
     const std::uint64_t number = source.whole();
     if (const auto known = images_.find({number, use}); known != images_.end()) return known->second;
-    Image picture = read_picture(source);
+    Image picture = read_picture(source, use);
     const bool integers = picture.format() == PixelFormat::u8 || picture.format() == PixelFormat::u16;
     if (use == Use::alpha)
         picture = alpha_channel_of(picture);
-    else if (integers && use == Use::linear)
+    else if (integers && use != Use::color)
         picture.set_encoding(ColorEncoding::linear());
     return images_[{number, use}] = builder_.add_image(std::move(picture), "the picture",
                                                        document_.refer(source, "images", "image").place());
@@ -202,7 +226,7 @@ FloatParameter TextureLibrary::number(const std::optional<Value>& info, float fa
 }
 
 NormalMapParameter TextureLibrary::normal_map(const Value& info) {
-    ImageTexture t = texture(info, Use::linear);
+    ImageTexture t = texture(info, Use::normal);
     if (builder_.scene().images[t.image].color_channels().size() != 3)
         info.error("the normal map has no channels R, G and B");
     const auto scale = static_cast<float>(info.number("scale", 1));
@@ -216,7 +240,7 @@ Index TextureLibrary::emission(const Value& info, Vec3f factor) {
     if (info.extension("KHR_texture_transform"))
         info.warn("KHR_texture_transform is ignored for emissive pictures");
     const Value& texture = document_.refer(info.required("index"), "textures", "texture");
-    Image map = rgb_map(read_picture(source_of(texture)));
+    Image map = rgb_map(read_picture(source_of(texture), Use::emission));
     for (std::size_t i = 0; i < map.sample_count(); ++i) map.f32()[i] *= factor[static_cast<int>(i % 3)];
     return builder_.add_light_picture(map, "the picture", info.place());
 }

@@ -43,11 +43,12 @@ class TextureLibrary {
 
   private:
     // What is taken of a file's picture.
-    enum class Use { color, linear, alpha };
+    enum class Use { color, linear, normal, alpha, emission };
 
     ImageTexture texture(const Value& info, Use use);
     Index image(const Value& source, Use use);
-    Image read_picture(const Value& index);
+    // A stand-in, with a warning, where its file cannot be read.
+    Image read_picture(const Value& index, Use use);
     // The index of the image that a texture shows. Errors: only one in a format that is not read.
     Value source_of(const Value& texture);
     void read_sampler(const Value& texture, ImageTexture& to);

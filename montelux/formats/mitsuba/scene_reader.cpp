@@ -1,11 +1,13 @@
 #include "montelux/formats/mitsuba/scene_reader.h"
 
+#include <optional>
 #include <utility>
 
 #include "montelux/formats/mitsuba/films.h"
 #include "montelux/formats/mitsuba/integrators.h"
 #include "montelux/formats/mitsuba/sensors.h"
 #include "montelux/formats/mitsuba/shapes.h"
+#include "montelux/formats/named_cameras.h"
 #include "montelux/scene/build/quoted.h"
 #include "montelux/scene/material/diffuse_material.h"
 
@@ -44,10 +46,14 @@ void SceneReader::read_settings(Plugin& scene) {
         read_integrator(*integrator, description_.integrator);
     const std::vector<Plugin> sensors = scene.children("sensor");
     description_.has_camera = !sensors.empty();
-    if (options_.camera || !sensors.empty()) {
-        read_sensor(choose_sensor(sensors, options_.camera, scene), media_, description_);
-        return;
+    for (const Plugin& sensor : sensors) description_.camera_names.push_back(sensor.id());
+    std::size_t number = 0;
+    if (options_.camera) {
+        const std::optional<std::size_t> found = find_camera(description_.camera_names, *options_.camera);
+        if (!found) scene.error(no_such_camera(description_.camera_names, *options_.camera));
+        number = *found;
     }
+    if (!sensors.empty()) return read_sensor(sensors[number], media_, description_);
     constexpr std::uint32_t samples_of_studio = 128;
     description_.film = standard_film();
     description_.sampler.spp = samples_of_studio;

@@ -6,7 +6,6 @@
 
 #include "montelux/formats/mitsuba/films.h"
 #include "montelux/mc/math/constants.h"
-#include "montelux/mc/math/nearest_name.h"
 #include "montelux/scene/build/float_range.h"
 #include "montelux/scene/build/quoted.h"
 
@@ -54,8 +53,7 @@ CameraModel read_camera(Plugin& plugin, double aspect) {
     const auto focus = [&] { return static_cast<float>(plugin.number("focus_distance", far, 1e-30, 1e30)); };
     if (plugin.type() == "orthographic") {
         plugin.skip("focus_distance"); // without a lens
-        const auto y = static_cast<float>(1 / aspect);
-        return OrthographicCamera{.screen_window = ScreenWindow{-1, 1, -y, y}};
+        return OrthographicCamera{.scale = static_cast<float>(std::min(1.0, 1 / aspect))};
     }
     PerspectiveCamera camera;
     camera.fov = shorter_fov(plugin, aspect);
@@ -96,26 +94,6 @@ double horizontal_fov(Plugin& plugin, double aspect) {
 }
 
 Transform mirrored_camera() { return Transform::scale({-1, 1, 1}); }
-
-const Plugin& choose_sensor(const std::vector<Plugin>& sensors, const std::optional<std::string>& asked,
-                            const Plugin& scene) {
-    if (!asked) return sensors.front();
-    for (const Plugin& s : sensors)
-        if (s.id() == *asked) return s;
-    std::size_t number = 0;
-    const auto [end, error] = std::from_chars(asked->data(), asked->data() + asked->size(), number);
-    if (error == std::errc() && end == asked->data() + asked->size() && number < sensors.size())
-        return sensors[number];
-    std::vector<std::string_view> names;
-    std::string list;
-    for (std::size_t i = 0; i < sensors.size(); ++i) {
-        names.emplace_back(sensors[i].id());
-        list += (i == 0 ? "" : ", ") + std::to_string(i) +
-                (sensors[i].id().empty() ? "" : " " + in_quotes(sensors[i].id()));
-    }
-    scene.error("there is no camera " + in_quotes(*asked) + did_you_mean(*asked, names) +
-                (sensors.empty() ? "; the scene has none" : "; expected " + list));
-}
 
 void read_sensor(Plugin plugin, MediumLibrary& media, SceneDescription& description) {
     if (plugin.type() != "perspective" && plugin.type() != "thinlens" && plugin.type() != "orthographic")

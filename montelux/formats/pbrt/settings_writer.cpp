@@ -8,6 +8,7 @@
 #include "montelux/mc/math/error.h"
 #include "montelux/mc/math/float_near.h"
 #include "montelux/mc/math/overloaded.h"
+#include "montelux/scene/camera/camera.h"
 #include "montelux/spectrum/camera_sensors.h"
 
 namespace montelux::pbrt {
@@ -82,28 +83,35 @@ void SceneWriter::camera() {
         put(before + d.text() + "Identity\n");
     };
     std::visit(
-        Overloaded{[&](const PerspectiveCamera& p) {
-                       DirectiveText d = directive("perspective");
-                       d.number("fov", p.fov);
-                       perspective(d, p.lens_radius, p.focal_distance, p.frame_aspect_ratio, p.screen_window);
-                       finish(d);
-                   },
-                   [&](const OrthographicCamera& o) {
-                       DirectiveText d = directive("orthographic");
-                       perspective(d, o.lens_radius, o.focal_distance, o.frame_aspect_ratio, o.screen_window);
-                       finish(d);
-                   },
-                   [&](const SphericalCamera& s) {
-                       DirectiveText d = directive("spherical");
-                       if (s.mapping == SphericalCamera::Mapping::equirectangular)
-                           d.string("mapping", "equirectangular");
-                       finish(d);
-                   },
-                   [&](const RealisticCamera& r) {
-                       DirectiveText d = directive("realistic");
-                       realistic(d, r);
-                       finish(d);
-                   }},
+        Overloaded{
+            [&](const PerspectiveCamera& p) {
+                DirectiveText d = directive("perspective");
+                d.number("fov", p.fov);
+                perspective(d, p.lens_radius, p.focal_distance, p.frame_aspect_ratio, p.screen_window);
+                finish(d);
+            },
+            [&](const OrthographicCamera& o) {
+                DirectiveText d = directive("orthographic");
+                std::optional<ScreenWindow> window = o.screen_window;
+                if (o.scale != 1) {
+                    const ScreenWindow w = window_of(o.screen_window, o.frame_aspect_ratio,
+                                                     description_.film.width, description_.film.height);
+                    window = {w.x_min * o.scale, w.x_max * o.scale, w.y_min * o.scale, w.y_max * o.scale};
+                }
+                perspective(d, o.lens_radius, o.focal_distance, o.frame_aspect_ratio, window);
+                finish(d);
+            },
+            [&](const SphericalCamera& s) {
+                DirectiveText d = directive("spherical");
+                if (s.mapping == SphericalCamera::Mapping::equirectangular)
+                    d.string("mapping", "equirectangular");
+                finish(d);
+            },
+            [&](const RealisticCamera& r) {
+                DirectiveText d = directive("realistic");
+                realistic(d, r);
+                finish(d);
+            }},
         c.model);
 }
 

@@ -10,8 +10,6 @@
 
 namespace montelux {
 
-namespace {
-
 ScreenWindow window_of(const std::optional<ScreenWindow>& window, std::optional<float> aspect, int width,
                        int height) {
     if (window) return *window;
@@ -19,8 +17,6 @@ ScreenWindow window_of(const std::optional<ScreenWindow>& window, std::optional<
     if (a > 1) return {-a, a, -1, 1};
     return {-1, 1, -1 / a, 1 / a};
 }
-
-} // namespace
 
 Camera::Placement::Placement(const Transform& world_from_camera)
     : origin(world_from_camera.point(Vec3d{0, 0, 0})) {
@@ -55,7 +51,7 @@ Camera::Camera(const CameraSettings& settings, int width, int height)
         use_lens(c->lens_radius, c->focal_distance);
     } else if (const auto* o = std::get_if<OrthographicCamera>(&settings.model)) {
         kind_ = Kind::orthographic;
-        use_window(window_of(o->screen_window, o->frame_aspect_ratio, width, height), 1);
+        use_window(window_of(o->screen_window, o->frame_aspect_ratio, width, height), o->scale);
         use_lens(o->lens_radius, o->focal_distance);
     } else if (const auto* r = std::get_if<RealisticCamera>(&settings.model)) {
         kind_ = Kind::realistic;

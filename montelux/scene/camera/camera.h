@@ -24,6 +24,10 @@ struct CameraConnection {
     float density = 0; // Camera::density there
 };
 
+// The screen window of a film of that size, in pixels, where the camera gives neither or one of window and aspect ratio.
+ScreenWindow window_of(const std::optional<ScreenWindow>& window, std::optional<float> aspect, int width,
+                       int height);
+
 class Camera {
   public:
     // width, height: the full resolution in pixels. Throws Error for an invalid lens or field of view.

@@ -15,7 +15,8 @@
 namespace montelux {
 
 // The screen window is the part of the z = 1 plane (perspective) or of the film plane (orthographic) that the
-// full resolution covers; without one it is [-1, 1] on the shorter axis. A lens of radius 0 is a pinhole.
+// full resolution covers; without one it is [-1, 1] (orthographic: times `scale`) on the shorter axis. A lens of radius 0 is a
+// pinhole.
 struct ScreenWindow {
     float x_min = -1, x_max = 1, y_min = -1, y_max = 1;
 };
@@ -27,6 +28,7 @@ struct PerspectiveCamera {
     std::optional<ScreenWindow> screen_window{};
 };
 struct OrthographicCamera {
+    float scale = 1; // of the window
     float lens_radius = 0;
     float focal_distance = 1e6f;
     std::optional<float> frame_aspect_ratio{};

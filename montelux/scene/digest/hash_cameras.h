@@ -16,8 +16,8 @@ inline void hash_values(SceneHasher& h, const PerspectiveCamera& c) {
     h.all(fov, lens_radius, focal_distance, frame_aspect_ratio, screen_window);
 }
 inline void hash_values(SceneHasher& h, const OrthographicCamera& c) {
-    const auto& [lens_radius, focal_distance, frame_aspect_ratio, screen_window] = c;
-    h.all(lens_radius, focal_distance, frame_aspect_ratio, screen_window);
+    const auto& [scale, lens_radius, focal_distance, frame_aspect_ratio, screen_window] = c;
+    h.all(scale, lens_radius, focal_distance, frame_aspect_ratio, screen_window);
 }
 inline void hash_values(SceneHasher& h, const SphericalCamera& c) {
     const auto& [mapping] = c;

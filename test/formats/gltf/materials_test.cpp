@@ -102,6 +102,31 @@ TEST(GltfMaterials, AlphaOfPictures) {
     EXPECT_EQ(image.u8()[1], 16 * 7);
 }
 
+TEST(GltfMaterials, MissingPicturesHaveStandIns) {
+    for (const std::string uri : {"gone.png", "../outside.png"}) {
+        Warnings warnings;
+        const SceneDescription d = with_material(
+            R"("pbrMetallicRoughness": {"baseColorTexture": {"index": 0},
+                "metallicRoughnessTexture": {"index": 0}}, "normalTexture": {"index": 0})",
+            false, R"(, "images": [{"uri": ")" + uri + R"("}], "textures": [{"source": 0}])", &warnings);
+        ASSERT_GE(warnings.messages().size(), 2u);
+        EXPECT_NE(warnings.messages()[0].find("/images/0/uri: "), std::string::npos)
+            << warnings.messages()[0];
+        EXPECT_NE(warnings.messages()[0].find("; magenta stands for the picture"), std::string::npos);
+        const auto& m = std::get<PrincipledMaterial>(d.scene.materials.at(0));
+        const auto texel = [&](const ImageTexture& t, std::size_t channel) {
+            return int{d.scene.images.at(t.image).u8()[channel]};
+        };
+        const ImageTexture& color = picture_of(d, m.base_color.texture);
+        EXPECT_EQ(texel(color, 0), 255);
+        EXPECT_EQ(texel(color, 1), 0);
+        EXPECT_EQ(texel(color, 2), 255);
+        EXPECT_EQ(texel(std::get<ImageTexture>(d.scene.float_textures.at(m.roughness.texture)), 1), 255);
+        EXPECT_EQ(texel(d.scene.normal_maps.at(m.detail.normal_map.map), 2), 255);
+        EXPECT_EQ(texel(d.scene.normal_maps.at(m.detail.normal_map.map), 0), 128);
+    }
+}
+
 TEST(GltfMaterials, EmissionIsInCandelaPerSquareMetre) {
     const SceneDescription d = with_material(R"("emissiveFactor": [0.5, 0.25, 1], "doubleSided": true,
         "extensions": {"KHR_materials_emissive_strength": {"emissiveStrength": 8}})");

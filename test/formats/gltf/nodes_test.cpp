@@ -50,6 +50,29 @@ TEST(GltfNodes, MirroredMeshesKeepTheirFronts) {
     EXPECT_EQ(front("[1, 1, -1]"), -1);
 }
 
+// KHR_node_visibility hides what is below a node, too, but no camera.
+TEST(GltfNodes, HiddenNodesHaveNeitherMeshesNorLights) {
+    const auto load = [](const std::string& visible) {
+        return load_model(with_triangle(
+            R"("extensions": {"KHR_lights_punctual": {"lights": [{"type": "point"}]}},
+               "cameras": [{"type": "perspective", "perspective": {"yfov": 1, "znear": 1}}],
+               "nodes": [{"mesh": 0, "children": [1], "extensions": {"KHR_node_visibility": {)" +
+            visible + R"(}}},
+                         {"mesh": 0, "camera": 0, "children": [2], "extensions": {"KHR_node_visibility": {"visible": true}}},
+                         {"extensions": {"KHR_lights_punctual": {"light": 0}}}, {"mesh": 0, "translation": [5, 0, 0]}])"));
+    };
+    for (const std::string visible : {"", R"("visible": true)"}) {
+        const SceneDescription d = load(visible);
+        EXPECT_EQ(d.scene.instances.size(), 3u);
+        EXPECT_EQ(d.scene.lights.size(), 1u);
+    }
+    const SceneDescription d = load(R"("visible": false)");
+    EXPECT_EQ(d.scene.world_shapes.size(), 1u);
+    expect_near(first_vertex(d), {5, 0, 0});
+    EXPECT_TRUE(d.scene.lights.empty());
+    EXPECT_TRUE(d.has_camera);
+}
+
 TEST(GltfNodes, MeshesUsedTwiceAreInstances) {
     const SceneDescription d = load_model(with_triangle(
         R"("nodes": [{"mesh": 0, "translation": [1, 0, 0]}, {"mesh": 0, "translation": [0, 2, 0]}])"));

@@ -73,6 +73,27 @@ TEST(GltfPrincipled, MetallicRoughness) {
     expect_color(m, m.base_color, {1, 0.5f, 0});
 }
 
+TEST(GltfPrincipled, SpecularGlossiness) {
+    const Principled m = extended("pbrSpecularGlossiness",
+                                  R"("diffuseFactor": [1, 0.5, 0, 1], "diffuseTexture": {"index": 0},
+        "specularFactor": [0.5, 1, 0.25], "glossinessFactor": 0.75, "specularGlossinessTexture": {"index": 0})");
+    expect_color(m, m.base_color, {1, 0.5f, 0});
+    expect_color(m, m.specular_color, {0.5f, 1, 0.25f});
+    EXPECT_EQ(m.metallic.value, 0);
+    EXPECT_EQ(m.ior.value, 0);
+    const auto& rough = std::get<MixTexture<FloatParameter>>(m.scene.float_textures.at(m.roughness.texture));
+    EXPECT_EQ(rough.first.value, 1);
+    EXPECT_EQ(rough.second.value, 0.25f);
+    expect_alpha(m, rough.amount, 1);
+
+    // It wins over metallic-roughness.
+    const Principled plain = principled(R"("pbrMetallicRoughness": {"baseColorFactor": [0, 1, 0, 1]},
+        "extensions": {"KHR_materials_pbrSpecularGlossiness": {"glossinessFactor": 0.25}})");
+    EXPECT_EQ(plain.roughness.value, 0.75f);
+    EXPECT_EQ(plain.metallic.value, 0);
+    EXPECT_NEAR(spectrum_of(plain.base_color.value, plain.scene.spectra)(650), 1, 1e-3f);
+}
+
 TEST(GltfPrincipled, Layers) {
     Principled m = extended("clearcoat", R"("clearcoatFactor": 0.5, "clearcoatTexture": {"index": 0},
         "clearcoatRoughnessFactor": 0.75, "clearcoatRoughnessTexture": {"index": 0})");
