@@ -42,10 +42,6 @@ void print_outliers(const OutlierReport& o) {
             "%llu pixels (%s) have neighbours of far larger variance: off an edge, their error bars are "
             "too small (layer warning)\n",
             number(o.outshone), share(o.outshone).c_str());
-    if (o.unknown > 0)
-        std::printf("%llu pixels have too few samples to check their error bars: 16 replicates needed (layer "
-                    "replicates)\n",
-                    number(o.unknown));
 }
 
 } // namespace montelux::app

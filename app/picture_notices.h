@@ -14,7 +14,7 @@ std::string visible_text(const std::optional<double>& share);
 // Mean luminances: removed by clamping, and remaining.
 void print_clamped(double samples, double lost, double left);
 
-// Prints if few pixels carry most of the error, and if error bars are unreliable or have too few samples.
+// Prints if few pixels carry most of the error, and if error bars are unreliable.
 void print_outliers(const OutlierReport& outliers);
 
 } // namespace montelux::app

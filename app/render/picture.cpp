@@ -233,6 +233,10 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = missing_error_warning(result, session->renderer()); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
+        if (const std::string warning =
+                black_warning(*result.image, result.error.mean_samples, session->description().scene);
+            !warning.empty())
+            std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (!task.is_frame) {
             print_outliers(*result.outliers);
             const std::string advice = advice_text({.target = target,
@@ -245,7 +249,7 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
             if (!advice.empty()) std::printf("%s\n", advice.c_str());
         }
         if (options.stats) {
-            print_statistics(report, task.load_seconds, session->renderer());
+            print_statistics(report, *result.outliers, task.load_seconds, session->renderer());
             shared.print_statistics();
         }
         if (options.memory)

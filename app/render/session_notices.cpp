@@ -46,7 +46,8 @@ void print_casters(const SceneView& scene) {
 
 } // namespace
 
-void print_statistics(const RenderReport& report, double load_seconds, const Renderer& renderer) {
+void print_statistics(const RenderReport& report, const OutlierReport& outliers, double load_seconds,
+                      const Renderer& renderer) {
     auto samples = static_cast<double>(report.samples), rays = static_cast<double>(report.rays.rays());
     std::printf("load               %.3f s\n", load_seconds);
     std::printf("build              %.3f s\n", renderer.build_seconds());
@@ -62,6 +63,10 @@ void print_statistics(const RenderReport& report, double load_seconds, const Ren
     }
     std::printf("samples            %ssamples/s, %.3f us of CPU each\n",
                 count_text(samples / report.seconds).c_str(), 1e6 * report.cpu_seconds / samples);
+    const double checked = static_cast<double>(outliers.pixels - outliers.unknown);
+    std::printf(
+        "error bars         checked in %s of the pixels, those with 16 replicates (layer replicates)\n",
+        percent_text(checked / static_cast<double>(outliers.pixels)).c_str());
     std::printf(
         "rays               %srays/s, %srays/s of CPU, %.2f per sample (%.2f closest hit, %.2f occlusion)\n",
         count_text(rays / report.seconds).c_str(), count_text(rays / report.cpu_seconds).c_str(),

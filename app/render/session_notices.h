@@ -15,6 +15,7 @@ void print_resume_notices(const RenderSession& session, bool quiet);
 void print_nothing_left(const RenderSession& session, const RenderReport& report);
 // `can_replay`: by --debug-sample.
 void print_bad_samples(const BadSampleReport& bad, std::uint64_t seed, bool can_replay);
-void print_statistics(const RenderReport& report, double load_seconds, const Renderer& renderer);
+void print_statistics(const RenderReport& report, const OutlierReport& outliers, double load_seconds,
+                      const Renderer& renderer);
 
 } // namespace montelux::app

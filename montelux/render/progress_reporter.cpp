@@ -57,7 +57,10 @@ void ProgressReporter::report(const std::optional<FilmError>& error, bool ended)
     progress_.samples_total =
         std::max(progress_.samples_done, std::min(pace.samples_most, expected_samples(pace)));
     const bool complete = ended && state_.report.stop != RenderStop::cancelled;
+    const double share_before = progress_.forecast.share;
     progress_.forecast = complete ? RenderForecast{1, 0} : forecast(pace, target_);
+    // A new estimate of what is left never takes back what was shown.
+    progress_.forecast.share = std::max(progress_.forecast.share, share_before);
     progress_.ended = ended;
     control_.progress(progress_);
 }

@@ -1,9 +1,13 @@
 #include "montelux/render/render_warnings.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
+#include <vector>
 
 #include "montelux/render/sample_order.h"
+#include "montelux/scene/light/light.h"
 #include "montelux/transport/manifold/casters.h"
 
 namespace montelux {
@@ -93,6 +97,28 @@ std::string missing_error_warning(const RenderSnapshot& result, const Renderer& 
     if (std::isfinite(result.error.relative) || result.error.mean_samples < 2 || points < 2) return {};
     return "the errors are unknown: fewer than two replicates of " + std::to_string(points) +
            " samples per pixel are complete; a time limit or a target error makes them short";
+}
+
+std::string black_warning(const Image& picture, double samples_per_pixel, const Scene& scene) {
+    constexpr double enough_samples = 8;
+    const std::optional<int> depth = picture.find_channel("depth.Z");
+    const std::vector<int> colors = picture.color_channels();
+    if (!depth || samples_per_pixel < enough_samples) return {};
+    std::size_t surfaces = 0, black = 0;
+    for (int y = 0; y < picture.height(); ++y)
+        for (int x = 0; x < picture.width(); ++x) {
+            const float z = picture.value(x, y, *depth);
+            if (!(z > 0 && std::isfinite(z))) continue;
+            ++surfaces;
+            black += std::ranges::all_of(colors, [&](int c) { return picture.value(x, y, c) == 0; }) ? 1 : 0;
+        }
+    if (2 * black <= surfaces || scene.lights.empty()) return {}; // without lights the scene's reader warns
+    const bool lit_all_around = std::ranges::any_of(
+        scene.lights, [](const Light& light) { return kind_of(light) == LightKind::infinite; });
+    return lit_all_around ? "most of what the camera sees is black: light hardly finds its way there "
+                            "(--integrator auto looks for a better one)"
+                          : "most of what the camera sees is black: nothing lights the scene all around "
+                            "(--environment studio does)";
 }
 
 } // namespace montelux

@@ -26,4 +26,8 @@ std::string manifold_warning(const Renderer& renderer);
 // errors when they are merged.
 std::string missing_error_warning(const RenderSnapshot& result, const Renderer& renderer);
 
+// For a picture in which most pixels that see a surface are black after eight samples or more: what may be missing; empty
+// for others, and where the picture has no layer of depths.
+std::string black_warning(const Image& picture, double samples_per_pixel, const Scene& scene);
+
 } // namespace montelux
