@@ -19,6 +19,31 @@ MATERIALS = {
 TOLERANCE = {"glass": 0.03}
 
 
+def test_surfaces_without_a_material(scene: BlenderScene) -> None:
+    scene.add_plane().data.materials.clear()
+    scene.set_world((1, 1, 1))
+    scene.look((0, -4, 3), (0, 0, 0))
+    scene.scene.montelux.samples = 64
+    ours, theirs = blocks_of(scene.render(), 4), blocks_of(scene.render_by_cycles(64), 4)
+    assert abs(ours.mean() / theirs.mean() - 1) < 0.02
+
+
+def test_what_is_not_exported_is_named(scene: BlenderScene, capfd: pytest.CaptureFixture) -> None:
+    ball = scene.add_cube()
+    tree = ball.data.materials[0].node_tree
+    shader = next(n for n in tree.nodes if n.bl_idname == "ShaderNodeBsdfPrincipled")
+    tree.links.new(tree.nodes.new("ShaderNodeTexNoise").outputs["Color"], shader.inputs["Base Color"])
+    tree.nodes.new("ShaderNodeTexVoronoi")  # without a part in the surface
+    scene.add_light("POINT", energy=100, shadow_soft_size=0.5)
+    scene.add_light("SUN", energy=1, angle=0.1)
+    scene.render()
+    printed = "".join(capfd.readouterr())
+    assert "Material 'cube': its node 'Noise Texture' is not exported" in printed
+    assert "Voronoi" not in printed
+    assert "Light 'point': its radius is ignored, its shadows are hard" in printed
+    assert "Light 'sun': its angle is ignored" in printed
+
+
 @pytest.mark.parametrize("name", MATERIALS)
 def test_ball(scene: BlenderScene, name: str) -> None:
     bpy.ops.mesh.primitive_uv_sphere_add(segments=96, ring_count=48, radius=1)

@@ -18,6 +18,7 @@ from mathutils import Matrix
 
 from .animated_materials import AnimatedMaterials
 from .errors import ExportError
+from .materials import warn_of_nodes
 
 WITHOUT_EQUAL = ("CURVES", "POINTCLOUD", "VOLUME", "GPENCIL", "GREASEPENCIL")
 
@@ -93,6 +94,8 @@ def _copy(depsgraph: bpy.types.Depsgraph, copies: _Copies, warnings: list[str]) 
         shown = instance.object
         if not instance.show_self or not _is_for_the_camera(shown, warnings):
             continue
+        for slot in shown.material_slots:
+            warn_of_nodes(slot.material, warnings)
         materials = tuple(copies.materials.stand_in(slot.material) for slot in shown.material_slots)
         # One mesh for all instances of what is evaluated once, so that the program stores it once, too.
         key = (shown.data.as_pointer(), materials)
@@ -127,6 +130,12 @@ def _sheared(mesh: bpy.types.Mesh, matrix: Matrix) -> bpy.types.Mesh:
     return sheared
 
 
+def is_linked_to_lights(shown: bpy.types.Object) -> bool:
+    """Light linking of Blender 4.0 and later: some lights reach some objects alone."""
+    linking = getattr(shown, "light_linking", None)
+    return linking is not None and bool(linking.receiver_collection or linking.blocker_collection)
+
+
 def _is_for_the_camera(shown: bpy.types.Object, warnings: list[str]) -> bool:
     if shown.type in WITHOUT_EQUAL:
         warnings.append(f"'{shown.name}' is ignored: glTF has nothing like a {shown.type.lower()}")
@@ -135,6 +144,8 @@ def _is_for_the_camera(shown: bpy.types.Object, warnings: list[str]) -> bool:
         return False
     if getattr(shown, "is_holdout", False) or getattr(shown, "is_shadow_catcher", False):
         warnings.append(f"'{shown.name}' is rendered as it is, not as a holdout or shadow catcher")
+    if is_linked_to_lights(shown):
+        warnings.append(f"'{shown.name}' is lit by all lights, whatever its light linking says")
     if not all(getattr(shown, f"visible_{ray}", True) for ray in ("camera", "diffuse", "glossy", "shadow")):
         warnings.append(f"'{shown.name}' is visible to all rays, whatever its ray visibility says")
     return True

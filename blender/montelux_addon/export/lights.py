@@ -71,6 +71,9 @@ def export_light(light_object: bpy.types.Object, matrix: Matrix, warnings: list[
         return None
     if light.type == "AREA":
         return _panel_of(light, matrix, colour, warnings)
+    if (light.angle if light.type == "SUN" else light.shadow_soft_size) > 0:
+        size = "angle" if light.type == "SUN" else "radius"
+        warnings.append(f"Light '{light.name}': its {size} is ignored, its shadows are hard")
     # Power that is not normalised is per area, which only light.area() knows.
     area = 1.0 if getattr(light, "normalize", True) else light.area(matrix_world=matrix)
     if light.type == "SUN":

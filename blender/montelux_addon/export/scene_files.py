@@ -11,10 +11,10 @@ import bpy
 from .camera import Camera, export_camera
 from .environment_map import World, environment_map, write_pfm
 from .errors import ExportError
-from .geometry import export_geometry
-from .glass import make_glass_solid
+from .geometry import export_geometry, is_linked_to_lights
 from .glb import Glb
 from .lights import Panel, PunctualLight, export_light
+from .materials import add_missing_material, make_glass_solid
 from .world import export_world
 
 
@@ -43,6 +43,7 @@ def export_scene(depsgraph: bpy.types.Depsgraph, camera_object: bpy.types.Object
     export_geometry(depsgraph, path, warnings)
     glb = Glb.read(path)
     make_glass_solid(glb)
+    add_missing_material(glb)
     glb.add_root(camera.node(glb.add("cameras", {"name": camera.name, **camera.gltf})))
     for light in lights:
         light.add_to(glb)
@@ -56,6 +57,8 @@ def _lights_of(depsgraph: bpy.types.Depsgraph, warnings: list[str]) -> list[Punc
     lights = []
     for instance in depsgraph.object_instances:
         if instance.object.type == "LIGHT" and instance.show_self:
+            if is_linked_to_lights(instance.object):
+                warnings.append(f"Light '{instance.object.name}' reaches everything, whatever its light linking says")
             light = export_light(instance.object, instance.matrix_world.copy(), warnings)
             if light is not None:
                 lights.append(light)
