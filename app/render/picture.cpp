@@ -92,12 +92,12 @@ std::optional<float> write_output(const std::string& output, const RenderSnapsho
 }
 
 // Why the render ended, unless by the number of samples.
-std::string ending_text(const RenderReport& report, const RenderTarget& target) {
+std::string ending_text(const RenderReport& report, const RenderTarget& target, bool lacks_light) {
     switch (report.stop) {
     case RenderStop::cancelled:
         return ", stopped before the end";
     case RenderStop::error:
-        return ", target reached";
+        return lacks_light ? ", target missed: light is missing" : ", target reached";
     case RenderStop::time:
         return target.error > 0 ? ", time is up before the target was reached" : ", time is up";
     default:
@@ -196,6 +196,7 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
     const RenderSnapshot result = session->finish(denoise);
     if (view) view->show(result);
     const RenderReport& report = result.report;
+    const bool lacks_light = result.missing && result.missing->matters(target.error);
     PictureResult done;
     if (report.cancelled() && task.is_frame) {
         done.exit_code = exit_interrupted;
@@ -221,8 +222,8 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
                         joined(files.written()).c_str(), crop.width(), crop.height(),
                         result.error.mean_samples, percent_text(result.error.relative).c_str(),
                         quantile_text(result.quantile).c_str(), visible_text(visible).c_str(),
-                        duration_text(report.seconds).c_str(), ending_text(report, target).c_str(),
-                        denoised.c_str());
+                        duration_text(report.seconds).c_str(),
+                        ending_text(report, target, lacks_light).c_str(), denoised.c_str());
         if (const std::string notice = merging_notice(result, target); !notice.empty())
             std::printf("%s\n", notice.c_str());
         if (const std::string warning = merging_warning(report.merging); !warning.empty())
@@ -232,6 +233,9 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
         if (const std::string warning = chain_warning(report.chains); !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning = missing_error_warning(result, session->renderer()); !warning.empty())
+            std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
+        if (const std::string warning = missing_light_warning(result, target, session->description());
+            !warning.empty())
             std::fprintf(stderr, "montelux: warning: %s\n", warning.c_str());
         if (const std::string warning =
                 black_warning(*result.image, result.error.mean_samples, session->description().scene);
@@ -263,7 +267,7 @@ PictureResult render_picture(const PictureTask& task, const RenderOptions& optio
     const bool quit_by_page = options.view.stays && !company.cancel->requested();
     if (report.cancelled() && !quit_by_page)
         done.exit_code = exit_interrupted;
-    else if (target.error > 0 && report.stop != RenderStop::error)
+    else if (target.error > 0 && (report.stop != RenderStop::error || lacks_light))
         done.exit_code = exit_stopped;
     return done;
 }

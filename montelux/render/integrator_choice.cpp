@@ -13,6 +13,7 @@
 #include "montelux/mc/stats/jackknife.h"
 #include "montelux/render/check_render.h"
 #include "montelux/render/integrator_pilot.h"
+#include "montelux/render/missing_light.h"
 #include "montelux/render/sample_allocation.h"
 #include "montelux/render/tile_renderer.h"
 #include "montelux/scene/setting_names.h"
@@ -293,8 +294,23 @@ class Choice {
         return chosen;
     }
 
+    // Whether path tracing would lack light that matters; then the other way has begun.
+    bool lacks_light() {
+        description_.integrator.method = kinds[path];
+        const std::optional<MissingLight> missing =
+            missing_light(description_, *prepared_, expected_samples() * pixels_);
+        if (!missing || !missing->matters(settings_.target(kinds[path]).error)) return false;
+        summary_.missing = missing->share;
+        if (!pilots_[bidirectional]) {
+            begin(bidirectional);
+            pilots_[bidirectional]->take_tiles(std::min(first_tiles, tiles_.size()), settings_.cancel);
+        }
+        return true;
+    }
+
     std::shared_ptr<ChosenIntegrator> decide() {
-        const std::size_t chosen = best();
+        std::size_t chosen = best();
+        if (chosen == path && possible_[bidirectional] && lacks_light()) chosen = bidirectional;
         description_.integrator.method = summary_.chosen = kinds[chosen];
         summary_.decided = true;
         for (const auto& pilot : pilots_)

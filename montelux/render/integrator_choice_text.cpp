@@ -34,6 +34,12 @@ std::string choice_text(const IntegratorChoice& choice) {
                     times_text(ratio) + (compared.empty() ? " times as long" : " times") +
                     (ratio < 1 ? " (too uncertain)" : "");
     }
+    if (choice.missing > 0) {
+        char share[48];
+        std::snprintf(share, sizeof share, "path tracing would lack %.2g %% of the light",
+                      100 * choice.missing);
+        compared = share;
+    }
     if (compared.empty() && choice.cpu_seconds > 0 && !has_light) compared = "the pilot found no light";
     if (!compared.empty()) text += ": " + compared;
     if (!untried.empty())

@@ -26,6 +26,7 @@ struct IntegratorChoice {
         std::uint64_t samples = 0; // of its pilot
     };
     bool decided = false; // by a pilot; otherwise the user chose
+    double missing = 0;   // share of the light that path tracing would lack, where that decided
     IntegratorKind chosen = IntegratorKind::path;
     std::array<Candidate, 3> candidates{};
     double cpu_seconds = 0; // of the whole pilot

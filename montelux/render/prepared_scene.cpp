@@ -5,7 +5,7 @@ namespace montelux {
 PreparedScene::PreparedScene(const SceneDescription& description)
     : scene_(description.scene),
       tables_(description.scene, description.integrator.environments(), description.integrator.light_sampling,
-              description.integrator.surfaces(), traces_light(description.integrator.method)),
+              description.integrator.surfaces(), true),
       accelerator_(tables_.view()),
       build_seconds_(std::chrono::duration<double>(std::chrono::steady_clock::now() - begin_).count()) {}
 

@@ -110,6 +110,11 @@ RenderSnapshot RenderSession::finish(const std::function<void(Image&)>& denoise)
     if (settings_.target.quantile > 0)
         result.quantile = {settings_.target.quantile,
                            error_quantile(state_->film, settings_.target.quantile)};
+    if (!report.cancelled() && settings_.target.slice.count == 1)
+        result.missing =
+            missing_light(*description_, *renderer_->prepared(),
+                          result.error.mean_samples * static_cast<double>(state_->film.pixels().size()),
+                          state_->guide != nullptr);
     guide_ = state_->guide;
     state_.reset();
     if (denoise && !report.cancelled()) {

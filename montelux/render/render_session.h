@@ -12,6 +12,7 @@
 #include "montelux/image/image.h"
 #include "montelux/render/integrator_choice.h"
 #include "montelux/render/live_film.h"
+#include "montelux/render/missing_light.h"
 #include "montelux/render/render_control.h"
 #include "montelux/render/renderer.h"
 
@@ -43,6 +44,7 @@ struct RenderSnapshot {
     // Of the finished picture.
     std::optional<OutlierReport> outliers{};
     std::optional<ErrorQuantile> quantile{}; // with a target quantile
+    std::optional<MissingLight> missing{};   // of a finished render by path tracing
     std::string denoise_failure{};           // why requested denoising failed
     bool half = false; // an EXR file of it holds 16-bit floats where those suffice (half_channels_of)
 };

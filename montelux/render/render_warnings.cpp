@@ -99,11 +99,31 @@ std::string missing_error_warning(const RenderSnapshot& result, const Renderer& 
            " samples per pixel are complete; a time limit or a target error makes them short";
 }
 
-std::string black_warning(const Image& picture, double samples_per_pixel, const Scene& scene) {
+std::string missing_light_warning(const RenderSnapshot& result, const RenderTarget& target,
+                                  const SceneDescription& description) {
+    if (!result.missing || !result.missing->matters(target.error)) return {};
+    const MissingLight& missing = *result.missing;
+    char share[32];
+    std::snprintf(share, sizeof share, "%.2g %%", 100 * missing.share);
+    const bool never = 2 * missing.never > missing.share;
+    std::string from;
+    if (missing.light != no_index) {
+        const auto name = [](const auto& light) { return std::string(light.name); };
+        from = " of the " + std::visit(name, description.scene.lights[missing.light]);
+    }
+    const bool soft = description.integrator.shading_terminator == ShadingTerminator::soft;
+    return "about " + std::string(share) + " of the light " +
+           (never ? "is missing" : "is missing, or in fireflies") + ": path tracing " +
+           (never ? "cannot find" : "hardly finds") + " light" + from +
+           " by way of smooth surfaces; --integrator bidirectional --merging auto" +
+           (soft ? " --shading-terminator hard finds it" : " finds it");
+}
+
+std::string black_warning(const Image& picture, double spp, const Scene& scene) {
     constexpr double enough_samples = 8;
     const std::optional<int> depth = picture.find_channel("depth.Z");
     const std::vector<int> colors = picture.color_channels();
-    if (!depth || samples_per_pixel < enough_samples) return {};
+    if (!depth || spp < enough_samples) return {};
     std::size_t surfaces = 0, black = 0;
     for (int y = 0; y < picture.height(); ++y)
         for (int x = 0; x < picture.width(); ++x) {

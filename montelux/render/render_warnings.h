@@ -28,6 +28,10 @@ std::string missing_error_warning(const RenderSnapshot& result, const Renderer& 
 
 // For a picture in which most pixels that see a surface are black after eight samples or more: what may be missing; empty
 // for others, and where the picture has no layer of depths.
-std::string black_warning(const Image& picture, double samples_per_pixel, const Scene& scene);
+std::string black_warning(const Image& picture, double spp, const Scene& scene);
+
+// How much light path tracing does not find, of which light, and what finds it; empty where that does not matter.
+std::string missing_light_warning(const RenderSnapshot& result, const RenderTarget& target,
+                                  const SceneDescription& description);
 
 } // namespace montelux

@@ -263,11 +263,16 @@ void SampleContext::find_paths(RayTracer& tracer, const Key& key, BidirectionalM
                                const std::function<void(const FilmPath&)>& visit) const {
     FilmPoint point;
     PathStart<SampleStream> start = begin(key, point);
+    MergingSample merging{light_stream(key)};
+    if (merges_) start.camera.merging = &merging;
+    std::vector<double> scratch;
     auto found = [&](const FoundPath& path) {
         // Where secondary wavelengths have ended, the value is zero at these.
         Vec3f rgb = exposure_.sensor().to_rgb(path.value, start.camera.lambda);
         if (path.film == nullptr) rgb = rgb * (point.weight * point.filter.weight);
-        visit({path.s, path.t, path.film, rgb, path.weight});
+        const std::size_t strategy = path.merged != nullptr ? path.densities.vertices() + path.s : path.s;
+        visit({path.s, path.t, path.film, rgb, path.weight,
+               path_tracing_density(path.densities, strategy, scratch), path.end.light});
     };
     const PathObserver observer{
         [](void* self, const FoundPath& path) { (*static_cast<decltype(found)*>(self))(path); }, &found};

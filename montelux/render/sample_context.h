@@ -102,11 +102,12 @@ class SampleContext {
     struct FilmPath {
         std::size_t s = 0, t = 0;      // vertices on the light's and on the camera's side
         const Point2f* film = nullptr; // of a splat; others count for the pixel of the sample
-        Vec3f rgb;         // linear sRGB as of the strategy alone, without the film's limit; filter
-                           // weight applied, but to splats
-        double weight = 0; // among the strategies that find the path
+        Vec3f rgb;                  // linear sRGB as of the strategy alone, without the film's limit; filter
+                                    // weight applied, but to splats
+        double weight = 0;          // among the strategies that find the path
+        double by_path_tracing = 0; // path_tracing_density
+        Index light = no_index;     // where it begins
     };
-    // Without merging.
     void find_paths(RayTracer& tracer, const Key& key, BidirectionalMemory& memory,
                     const std::function<void(const FilmPath&)>& visit) const;
     // One sample by itself, with every step of its path; the contribution is the same to the last bit.

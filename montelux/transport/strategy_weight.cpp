@@ -7,10 +7,11 @@
 
 namespace montelux {
 
-double strategy_weight(const PathDensities& path, std::size_t s, Heuristic heuristic,
-                       std::vector<double>& scratch) {
+namespace {
+
+// The densities of all strategies of a path of three vertices or more, but for a common factor.
+void find_densities(const PathDensities& path, std::vector<double>& scratch) {
     const std::size_t n = path.vertices();
-    if (n == 2) return s == 0 ? 1 : 0;
     // Products over vertices, each divided by the larger of its two densities: only ratios count, and no product of
     // many becomes infinite.
     const auto scale = [&](std::size_t i) {
@@ -45,8 +46,22 @@ double strategy_weight(const PathDensities& path, std::size_t s, Heuristic heuri
             (k >= 2 && path.delta[k - 1] != 0) || (k >= 1 && k < n - 1 && path.delta[k] != 0);
         if (joins_deltas) scratch[k] = 0;
     }
+}
+
+} // namespace
+
+double strategy_weight(const PathDensities& path, std::size_t s, Heuristic heuristic,
+                       std::vector<double>& scratch) {
+    if (path.vertices() == 2) return s == 0 ? 1 : 0;
+    find_densities(path, scratch);
     const MisHeuristic mis = heuristic == Heuristic::power ? MisHeuristic::power() : MisHeuristic::balance();
     return mis_weight(mis, std::span(scratch), s);
+}
+
+double path_tracing_density(const PathDensities& path, std::size_t s, std::vector<double>& scratch) {
+    if (path.vertices() == 2) return 1;
+    find_densities(path, scratch);
+    return (scratch[0] + scratch[1]) / scratch[s];
 }
 
 } // namespace montelux

@@ -85,13 +85,15 @@ std::unique_ptr<RenderJob> start(const SceneObject& scene, std::optional<std::ui
 std::vector<std::string> warnings_of(const RenderJob& job) {
     const RenderSnapshot result = job.result();
     const RenderSession& session = job.session();
-    std::vector<std::string> texts{bad_sample_warning(result.report.bad, session.sampler().seed),
-                                   missing_error_warning(result, session.renderer()),
-                                   merging_notice(result, session.renderer().target()),
-                                   merging_warning(result.report.merging),
-                                   manifold_warning(session.renderer()),
-                                   session.checkpoint_failure(),
-                                   result.denoise_failure};
+    std::vector<std::string> texts{
+        bad_sample_warning(result.report.bad, session.sampler().seed),
+        missing_error_warning(result, session.renderer()),
+        merging_notice(result, session.renderer().target()),
+        merging_warning(result.report.merging),
+        missing_light_warning(result, session.renderer().target(), session.description()),
+        manifold_warning(session.renderer()),
+        session.checkpoint_failure(),
+        result.denoise_failure};
     std::erase(texts, "");
     return texts;
 }

@@ -1,0 +1,210 @@
+#include "montelux/render/missing_light.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <map>
+#include <utility>
+#include <vector>
+
+#include "montelux/mc/math/overloaded.h"
+#include "montelux/mc/parallel/parallel_for.h"
+#include "montelux/mc/random/hash.h"
+#include "montelux/render/sample_context.h"
+#include "montelux/scene/light_tracing_support.h"
+#include "montelux/scene/material/material.h"
+#include "montelux/transport/bidirectional_integrator.h"
+#include "montelux/transport/ray_tracer.h"
+
+namespace montelux {
+namespace {
+
+constexpr std::uint64_t samples_of_pass = 2048, samples_of_part = 64;
+// Of bidirectional paths; one takes as long as some eight of path tracing.
+constexpr double fewest_looks = 8192, most_looks = 65536, render_samples_per_look = 400;
+constexpr std::uint32_t most_passes = 1 << 16; // of a film of one pixel
+constexpr double blur_in_pixels = 1.5;
+constexpr double rare = 8; // times the mean light of a sample: what a path must bring to be looked at
+
+double picture_luminance(Vec3f rgb) {
+    return 0.2126 * double(rgb.x) + 0.7152 * double(rgb.y) + 0.0722 * double(rgb.z);
+}
+
+// A path, as it counts for the picture's mean.
+struct Find {
+    double
+        in_a_sample; // luminance that a sample of path tracing would bring if it found the path; infinite if none does
+    double light; // share of the mean luminance
+    Index from;
+    int pass;
+};
+
+class MissingLightEstimate {
+  public:
+    MissingLightEstimate(const SceneDescription& description, const PreparedScene& prepared,
+                         const IntegratorSettings& integrator)
+        : crop_(description.film.crop),
+          accelerator_(prepared.accelerator()), sampler_{.kind = SamplerKind::independent,
+                                                         .seed = hash_key(description.sampler.seed,
+                                                                          0x6d697373696e67), // "missing"
+                                                         .spp = most_passes},
+          camera_(description.scene.camera, description.film.width, description.film.height),
+          context_(description, sampler_, prepared.view(), camera_, integrator),
+          pixels_(static_cast<std::uint64_t>(crop_.width()) * static_cast<std::uint64_t>(crop_.height())),
+          count_(std::min(pixels_, samples_of_pass)) {}
+
+    void take_pass() {
+        const int pass = static_cast<int>(means_.size());
+        if (pass == 0) radius_ = merging_radius();
+        const std::vector<SampleContext::Key> keys = keys_of(static_cast<std::uint64_t>(pass));
+        const std::size_t parts = (keys.size() + samples_of_part - 1) / samples_of_part;
+        const auto part_of = [&](std::size_t i) {
+            return std::span(keys).subspan(i * samples_of_part,
+                                           std::min(samples_of_part, keys.size() - i * samples_of_part));
+        };
+        std::vector<LightPaths> light(parts);
+        parallel_for(static_cast<std::int64_t>(parts), [&](std::int64_t i) {
+            RayTracer tracer(accelerator_);
+            context_.trace_light(tracer, part_of(static_cast<std::size_t>(i)),
+                                 light[static_cast<std::size_t>(i)]);
+        });
+        context_.set_light_map(std::make_shared<const LightMap>(std::move(light), count_, radius_));
+
+        std::vector<double> sums(parts, 0.0);
+        std::vector<std::vector<Find>> found(parts);
+        parallel_for(static_cast<std::int64_t>(parts), [&](std::int64_t p) {
+            const auto part = static_cast<std::size_t>(p);
+            RayTracer tracer(accelerator_);
+            BidirectionalMemory memory;
+            for (const SampleContext::Key& key : part_of(part))
+                context_.find_paths(tracer, key, memory, [&](const SampleContext::FilmPath& path) {
+                    // A light path brings its splats to the whole film.
+                    const double value = picture_luminance(path.rgb) /
+                                         (path.film != nullptr ? static_cast<double>(pixels_) : 1),
+                                 weighted = path.weight * value;
+                    if (!(weighted > 0) || !std::isfinite(weighted)) return;
+                    sums[part] += weighted;
+                    const double of_sample = path.by_path_tracing > 0
+                                                 ? value / path.by_path_tracing
+                                                 : std::numeric_limits<double>::infinity();
+                    if (of_sample > rare * mean_)
+                        found[part].push_back(
+                            {of_sample, weighted / static_cast<double>(count_), path.light, pass});
+                });
+        });
+        double sum = 0;
+        for (const double s : sums) sum += s;
+        for (const std::vector<Find>& f : found) finds_.insert(finds_.end(), f.begin(), f.end());
+        means_.push_back(sum / static_cast<double>(count_));
+        mean_ += (means_.back() - mean_) / static_cast<double>(means_.size());
+    }
+
+    // With at least two passes.
+    MissingLight missing(double samples) {
+        MissingLight result;
+        const auto passes = static_cast<double>(means_.size());
+        if (!(mean_ > 0)) return result;
+        std::ranges::sort(finds_, std::greater{}, &Find::in_a_sample);
+        std::size_t end = 0;
+        double light = 0; // of the paths so far that can be found, per sample
+        for (std::size_t i = 0; i < finds_.size(); ++i) {
+            if (std::isfinite(finds_[i].in_a_sample)) light += finds_[i].light / passes;
+            // A sample that finds one of them brings at least as much as the last one: fewer than one is expected.
+            if (samples * light < finds_[i].in_a_sample) end = i + 1;
+        }
+        std::vector<double> of_pass(means_.size(), 0.0);
+        std::map<Index, double> of_light;
+        for (std::size_t i = 0; i < end; ++i) {
+            of_pass[static_cast<std::size_t>(finds_[i].pass)] += finds_[i].light;
+            of_light[finds_[i].from] += finds_[i].light;
+            if (std::isinf(finds_[i].in_a_sample)) result.never += finds_[i].light / passes / mean_;
+        }
+        double sum = 0, squares = 0;
+        for (const double m : of_pass) sum += m;
+        for (const double m : of_pass) squares += std::pow(m - sum / passes, 2);
+        result.share = sum / passes / mean_;
+        result.error = std::sqrt(squares / (passes * (passes - 1))) / mean_;
+        if (!of_light.empty())
+            result.light =
+                std::ranges::max_element(of_light, {}, [](const auto& l) { return l.second; })->first;
+        return result;
+    }
+
+    std::uint64_t samples() const { return means_.size() * count_; }
+
+  private:
+    // Pixels spread over the film, others in each pass.
+    std::vector<SampleContext::Key> keys_of(std::uint64_t pass) const {
+        std::vector<SampleContext::Key> keys;
+        const std::uint64_t shift = hash_key(sampler_.seed, pass) % pixels_;
+        for (std::uint64_t i = 0; i < count_; ++i) {
+            const std::uint64_t pixel = (i * pixels_ / count_ + shift) % pixels_;
+            const auto width = static_cast<std::uint64_t>(crop_.width());
+            keys.push_back({crop_.x0 + static_cast<int>(pixel % width),
+                            crop_.y0 + static_cast<int>(pixel / width), pass});
+        }
+        return keys;
+    }
+
+    // As wide as 1.5 pixels of a film that has as many pixels as a pass has samples: what is blurred is still there.
+    double merging_radius() const {
+        RayTracer tracer(accelerator_);
+        std::vector<double> sizes;
+        for (const SampleContext::Key& key : keys_of(most_passes))
+            if (const auto size = context_.visible_pixel(tracer, key); size && *size > 0)
+                sizes.push_back(*size);
+        if (sizes.empty()) return 1e-3 * std::max(accelerator_.bounds().radius(), 1e-30);
+        const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+        std::nth_element(sizes.begin(), middle, sizes.end());
+        return blur_in_pixels * *middle *
+               std::sqrt(static_cast<double>(pixels_) / static_cast<double>(count_));
+    }
+
+    PixelBounds crop_;
+    const Accelerator& accelerator_;
+    SamplerSettings sampler_;
+    Camera camera_;
+    SampleContext context_;
+    std::uint64_t pixels_, count_;
+    double radius_ = 0;
+    std::vector<double> means_; // of the picture's luminance, one of each pass
+    double mean_ = 0;           // of these
+    std::vector<Find> finds_;
+};
+
+// Whether light may pass a surface of the material along one direction, or nearly so.
+bool may_focus(const Material& material) {
+    return std::visit(Overloaded{[](const DiffuseMaterial&) { return false; },
+                                 [](const DiffuseTransmissionMaterial&) { return false; },
+                                 [](const MeasuredMaterial&) { return false; },
+                                 [](const InterfaceMaterial&) { return false; },
+                                 [](const MixMaterial&) { return false; }, // its parts are materials, too
+                                 [](const SidedMaterial&) { return false; },
+                                 [](const auto&) { return true; }},
+                      material);
+}
+
+} // namespace
+
+std::optional<MissingLight> missing_light(const SceneDescription& description, const PreparedScene& prepared,
+                                          double samples, bool guided) {
+    IntegratorSettings integrator = description.integrator;
+    if (integrator.method != IntegratorKind::path || integrator.strategy != Strategy::mis ||
+        integrator.manifold_sampling || integrator.regularize ||
+        std::ranges::none_of(description.scene.materials, may_focus))
+        return std::nullopt;
+    integrator.method = IntegratorKind::bidirectional;
+    integrator.guiding = Guiding::off;
+    integrator.shading_terminator = ShadingTerminator::hard;
+    integrator.merging.emplace();
+    if (description.scene.lights.empty() || light_tracing_obstacle(description.scene, integrator))
+        return std::nullopt;
+    MissingLightEstimate estimate(description, prepared, integrator);
+    const double wanted = std::clamp(samples / render_samples_per_look, fewest_looks, most_looks);
+    while (!(static_cast<double>(estimate.samples()) >= wanted)) estimate.take_pass();
+    return estimate.missing(guided ? std::numeric_limits<double>::max() : samples);
+}
+
+} // namespace montelux
