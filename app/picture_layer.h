@@ -19,8 +19,8 @@ struct PictureLayer {
 // that there are, for others. `file` is for messages.
 PictureLayer layer_of(const Image& image, const std::string& name, const std::string& file);
 
-// Values that are no light, as shares of full white: directions as (n + 1) / 2, depths from 1 (nearest) to 0 (farthest, and
-// where there is no surface).
+// Makes values that are no light shares of full white: directions (n + 1) / 2, depths from 1 (nearest) to 0 (farthest,
+// and where there is no surface).
 void scale_for_screen(PictureLayer& layer);
 
 } // namespace montelux::app

@@ -7,8 +7,8 @@
 
 namespace montelux::app {
 
-// Loads the scene and prints it, as JSON or as text: counts by kind, bounds, memory, cameras, variants and animations, film,
-// settings, files and what was ignored.
+// Loads the scene and prints it, as JSON or as text: counts by kind, bounds, memory, cameras, variants and animations,
+// film, settings, files and what was ignored.
 void print_scene_info(const std::string& file, LoadOptions options, bool json);
 
 } // namespace montelux::app

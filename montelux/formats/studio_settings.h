@@ -18,8 +18,8 @@ struct Orbit {
 };
 
 struct StudioSettings {
-    // The file of an environment map, which replaces all infinite lights of the scene; "studio": the studio's own; "none"
-    // removes them.
+    // The file of an environment map, which replaces all infinite lights of the scene; "studio": the studio's own;
+    // "none" removes them.
     std::optional<std::string> environment{};
     std::optional<Orbit> orbit{}; // a camera that frames the scene, in place of its own
     std::optional<bool> ground{}; // empty: where the studio lights the scene

@@ -22,7 +22,7 @@ namespace montelux {
 namespace {
 
 constexpr std::uint64_t samples_of_pass = 2048, samples_of_part = 64;
-// Of bidirectional paths; one takes as long as some eight of path tracing.
+// Numbers of bidirectional paths, of which one takes as long as some eight of path tracing.
 constexpr double fewest_looks = 8192, most_looks = 65536, render_samples_per_look = 400;
 constexpr std::uint32_t most_passes = 1 << 16; // of a film of one pixel
 constexpr double blur_in_pixels = 1.5;
@@ -148,7 +148,7 @@ class MissingLightEstimate {
         return keys;
     }
 
-    // As wide as 1.5 pixels of a film that has as many pixels as a pass has samples: what is blurred is still there.
+    // The width of 1.5 pixels of a film that has as many pixels as a pass has samples: blurred light is still there.
     double merging_radius() const {
         RayTracer tracer(accelerator_);
         std::vector<double> sizes;
@@ -204,7 +204,8 @@ std::optional<MissingLight> missing_light(const SceneDescription& description, c
     MissingLightEstimate estimate(description, prepared, integrator);
     const double wanted = std::clamp(samples / render_samples_per_look, fewest_looks, most_looks);
     while (!(static_cast<double>(estimate.samples()) >= wanted)) estimate.take_pass();
-    return estimate.missing(guided ? std::numeric_limits<double>::max() : samples);
+    const bool looks_for_rare = !guided && !prepared.view().has_media();
+    return estimate.missing(looks_for_rare ? samples : std::numeric_limits<double>::max());
 }
 
 } // namespace montelux

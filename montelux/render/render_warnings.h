@@ -26,8 +26,8 @@ std::string manifold_warning(const Renderer& renderer);
 // errors when they are merged.
 std::string missing_error_warning(const RenderSnapshot& result, const Renderer& renderer);
 
-// For a picture in which most pixels that see a surface are black after eight samples or more: what may be missing; empty
-// for others, and where the picture has no layer of depths.
+// For a picture in which most pixels that see a surface are black after eight samples or more: what may be missing;
+// empty for others, and where the picture has no layer of depths.
 std::string black_warning(const Image& picture, double spp, const Scene& scene);
 
 // How much light path tracing does not find, of which light, and what finds it; empty where that does not matter.

@@ -52,7 +52,7 @@ struct PathDensities {
 double strategy_weight(const PathDensities& path, std::size_t s, Heuristic heuristic,
                        std::vector<double>& scratch);
 
-// Density with which path tracing finds the path (s < 2) over that of strategy s, which is positive; 0 if it never does.
+// Density with which path tracing finds the path (s < 2) over that of strategy s, which is positive; 0: never.
 double path_tracing_density(const PathDensities& path, std::size_t s, std::vector<double>& scratch);
 
 } // namespace montelux

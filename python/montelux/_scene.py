@@ -196,10 +196,10 @@ def load(
     about this many bytes are in memory.
 
     A model without camera and environment gets those of a studio. `environment` is a map that lights any scene in place
-    of its infinite lights ("studio": the studio's, "none": no such light); `orbit` a camera that frames it, (azimuth, elevation) in degrees or
-    (azimuth, elevation, distance) with the distance in multiples of the framing one; `ground` a disc below it that
-    catches its shadow; `background` what the camera sees where it meets nothing: "transparent" (layer "alpha"),
-    "black", "grey", "white", "#rrggbb", or linear (r, g, b).
+    of its infinite lights ("studio": the studio's, "none": no such light); `orbit` a camera that frames it, (azimuth,
+    elevation) in degrees or (azimuth, elevation, distance) with the distance in multiples of the framing one; `ground`
+    a disc below it that catches its shadow; `background` what the camera sees where it meets nothing: "transparent"
+    (layer "alpha"), "black", "grey", "white", "#rrggbb", or linear (r, g, b).
 
     Of glTF scenes: `camera` chooses one by name or number, `variant` one of the file's variants of materials, `time`
     the moment of its animations, in seconds, and `shutter` how long the shutter is open from then on, in seconds: what

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What materials mean in Blender and not in glTF: solid glass, surfaces without a material, nodes that are not exported."""
+"""What materials mean in Blender and not in glTF: solid glass, surfaces without a material, nodes that are left out."""
 
 from __future__ import annotations
 
@@ -38,8 +38,8 @@ GREY, ROUGHNESS = 0.8, 0.5  # of Blender's surfaces without a material, a Princi
 
 
 def make_glass_solid(glb: Glb) -> None:
-    """Gives materials that transmit a volume, without which glTF means a sheet (docs/gltf.md): Blender's transmission bends
-    light at every surface."""
+    """Gives materials that transmit a volume, without which glTF means a sheet (docs/gltf.md): Blender's transmission
+    bends light at every surface."""
     for material in glb.json.get("materials", []):
         extensions = material.get("extensions", {})
         if "KHR_materials_transmission" in extensions and "KHR_materials_volume" not in extensions:

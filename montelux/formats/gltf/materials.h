@@ -23,7 +23,7 @@ struct SurfaceLook {
     UvSets uv_sets{};
 };
 
-// Of KHR_materials_variants; may be empty.
+// The variants of KHR_materials_variants; may be empty.
 std::vector<std::string> variant_names(const Value& root);
 
 class MaterialLibrary {

@@ -24,7 +24,7 @@ struct CameraConnection {
     float density = 0; // Camera::density there
 };
 
-// The screen window of a film of that size, in pixels, where the camera gives neither or one of window and aspect ratio.
+// The screen window of a film of that size, in pixels, of a camera that may give a window or an aspect ratio.
 ScreenWindow window_of(const std::optional<ScreenWindow>& window, std::optional<float> aspect, int width,
                        int height);
 

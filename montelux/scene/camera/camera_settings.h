@@ -15,8 +15,8 @@
 namespace montelux {
 
 // The screen window is the part of the z = 1 plane (perspective) or of the film plane (orthographic) that the
-// full resolution covers; without one it is [-1, 1] (orthographic: times `scale`) on the shorter axis. A lens of radius 0 is a
-// pinhole.
+// full resolution covers; without one it is [-1, 1] (orthographic: times `scale`) on the shorter axis. A lens of
+// radius 0 is a pinhole.
 struct ScreenWindow {
     float x_min = -1, x_max = 1, y_min = -1, y_max = 1;
 };
