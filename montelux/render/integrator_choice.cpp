@@ -106,7 +106,7 @@ class Choice {
         find_candidates();
         try {
             prepare();
-            if (!take_pilots()) return abandon();
+            if (!take_pilots() || !look_for_missing_light()) return abandon();
         } catch (...) {
             abandon();
             throw;
@@ -294,23 +294,24 @@ class Choice {
         return chosen;
     }
 
-    // Whether path tracing would lack light that matters; then the other way has begun.
-    bool lacks_light() {
+    // Where path tracing is best but would lack light that matters, the other way begins. False if it was cancelled.
+    bool look_for_missing_light() {
+        if (best() != path || !possible_[bidirectional]) return true;
         description_.integrator.method = kinds[path];
         const std::optional<MissingLight> missing =
             missing_light(description_, *prepared_, expected_samples() * pixels_);
-        if (!missing || !missing->matters(settings_.target(kinds[path]).error)) return false;
+        if (!missing || !missing->matters(settings_.target(kinds[path]).error)) return true;
         summary_.missing = missing->share;
-        if (!pilots_[bidirectional]) {
-            begin(bidirectional);
-            pilots_[bidirectional]->take_tiles(std::min(first_tiles, tiles_.size()), settings_.cancel);
-        }
+        if (pilots_[bidirectional]) return true;
+        const std::size_t count = std::min(first_tiles, tiles_.size());
+        begin(bidirectional);
+        if (!pilots_[bidirectional]->take_tiles(count, settings_.cancel)) return false;
+        measure(count);
         return true;
     }
 
     std::shared_ptr<ChosenIntegrator> decide() {
-        std::size_t chosen = best();
-        if (chosen == path && possible_[bidirectional] && lacks_light()) chosen = bidirectional;
+        const std::size_t chosen = summary_.missing > 0 ? bidirectional : best();
         description_.integrator.method = summary_.chosen = kinds[chosen];
         summary_.decided = true;
         for (const auto& pilot : pilots_)

@@ -85,23 +85,12 @@ void MergingPasses::plan() {
     first_radius_ = double(settings_.radius);
     if (first_radius_ > 0) return check_radius();
     constexpr int across = 64;
-    std::vector<double> sizes;
-    RayTracer tracer(accelerator_);
+    std::vector<SampleContext::Key> keys;
     for (int j = 0; j < across; ++j)
-        for (int i = 0; i < across; ++i) {
-            const int x = crop_.x0 + static_cast<int>((i + 0.5) / across * crop_.width()),
-                      y = crop_.y0 + static_cast<int>((j + 0.5) / across * crop_.height());
-            // 0 of surfaces seen edge-on.
-            if (const auto size = context_.visible_pixel(tracer, {x, y, 0}); size && *size > 0)
-                sizes.push_back(*size);
-        }
-    if (sizes.empty()) { // nothing merges that is seen
-        first_radius_ = 1e-3 * std::max(accelerator_.bounds().radius(), 1e-30);
-        return;
-    }
-    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-    std::nth_element(sizes.begin(), middle, sizes.end());
-    first_radius_ = radius_in_pixels * *middle;
+        for (int i = 0; i < across; ++i)
+            keys.push_back({crop_.x0 + static_cast<int>((i + 0.5) / across * crop_.width()),
+                            crop_.y0 + static_cast<int>((j + 0.5) / across * crop_.height()), 0});
+    first_radius_ = merging_radius(context_, accelerator_, keys);
 }
 
 std::vector<LightPaths> MergingPasses::trace(std::uint64_t index, std::uint64_t paths, RenderReport& report,
@@ -153,6 +142,19 @@ void MergingPasses::prepare(std::uint64_t index, RenderReport& report, std::mute
     if (!map->empty()) summary.bytes = std::max<std::uint64_t>(summary.bytes, map->bytes());
     context_.set_light_map(std::move(map));
     prepared_ = index;
+}
+
+double merging_radius(const SampleContext& context, const Accelerator& accelerator,
+                      std::span<const SampleContext::Key> keys) {
+    RayTracer tracer(accelerator);
+    std::vector<double> sizes;
+    for (const SampleContext::Key& key : keys) // 0 of surfaces seen edge-on
+        if (const auto size = context.visible_pixel(tracer, key); size && *size > 0) sizes.push_back(*size);
+    if (sizes.empty())
+        return 1e-3 * std::max(accelerator.bounds().radius(), 1e-30); // nothing merges that is seen
+    const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
+    std::nth_element(sizes.begin(), middle, sizes.end());
+    return radius_in_pixels * *middle;
 }
 
 void close_bias(RenderState& state, std::uint64_t samples) {

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <mutex>
+#include <span>
 #include <vector>
 
 #include "montelux/accel/accelerator.h"
@@ -45,6 +46,11 @@ class MergingPasses {
     double first_radius_ = 0;
     std::uint64_t prepared_ = ~std::uint64_t{0};
 };
+
+// The radius of merging of the first pass: 1.5 sides of the pixel that is seen, the median over these samples; a small
+// one where none sees a surface.
+double merging_radius(const SampleContext& context, const Accelerator& accelerator,
+                      std::span<const SampleContext::Key> keys);
 
 // Ends the open pass of so many samples of all pixels in the bias of the state and its report.
 void close_bias(RenderState& state, std::uint64_t samples);

@@ -9,9 +9,12 @@
 #include <utility>
 #include <vector>
 
+#include "montelux/film/film_error.h"
 #include "montelux/mc/math/overloaded.h"
 #include "montelux/mc/parallel/parallel_for.h"
 #include "montelux/mc/random/hash.h"
+#include "montelux/mc/stats/moments.h"
+#include "montelux/render/merging_passes.h"
 #include "montelux/render/sample_context.h"
 #include "montelux/scene/light_tracing_support.h"
 #include "montelux/scene/material/material.h"
@@ -25,19 +28,13 @@ constexpr std::uint64_t samples_of_pass = 2048, samples_of_part = 64;
 // Numbers of bidirectional paths, of which one takes as long as some eight of path tracing.
 constexpr double fewest_looks = 8192, most_looks = 65536, render_samples_per_look = 400;
 constexpr std::uint32_t most_passes = 1 << 16; // of a film of one pixel
-constexpr double blur_in_pixels = 1.5;
 constexpr double rare = 8; // times the mean light of a sample: what a path must bring to be looked at
 
-double picture_luminance(Vec3f rgb) {
-    return 0.2126 * double(rgb.x) + 0.7152 * double(rgb.y) + 0.0722 * double(rgb.z);
-}
-
-// A path, as it counts for the picture's mean.
+// A path that path tracing finds rarely or never.
 struct Find {
-    double
-        in_a_sample; // luminance that a sample of path tracing would bring if it found the path; infinite if none does
-    double light; // share of the mean luminance
-    Index from;
+    double in_a_sample; // luminance of a sample of path tracing that finds it; infinite if none does
+    double light;       // luminance that it adds to the mean of its pass
+    Index from;         // its light; no_index where that is not known
     int pass;
 };
 
@@ -57,7 +54,10 @@ class MissingLightEstimate {
 
     void take_pass() {
         const int pass = static_cast<int>(means_.size());
-        if (pass == 0) radius_ = merging_radius();
+        // Discs as wide as for a film of as many pixels as a pass has samples: blurred light is still there.
+        if (pass == 0)
+            radius_ = merging_radius(context_, accelerator_, keys_of(most_passes)) *
+                      std::sqrt(static_cast<double>(pixels_) / static_cast<double>(count_));
         const std::vector<SampleContext::Key> keys = keys_of(static_cast<std::uint64_t>(pass));
         const std::size_t parts = (keys.size() + samples_of_part - 1) / samples_of_part;
         const auto part_of = [&](std::size_t i) {
@@ -81,7 +81,7 @@ class MissingLightEstimate {
             for (const SampleContext::Key& key : part_of(part))
                 context_.find_paths(tracer, key, memory, [&](const SampleContext::FilmPath& path) {
                     // A light path brings its splats to the whole film.
-                    const double value = picture_luminance(path.rgb) /
+                    const double value = dot(Vec3d(path.rgb), luminance_weight) /
                                          (path.film != nullptr ? static_cast<double>(pixels_) : 1),
                                  weighted = path.weight * value;
                     if (!(weighted > 0) || !std::isfinite(weighted)) return;
@@ -118,14 +118,14 @@ class MissingLightEstimate {
         std::map<Index, double> of_light;
         for (std::size_t i = 0; i < end; ++i) {
             of_pass[static_cast<std::size_t>(finds_[i].pass)] += finds_[i].light;
-            of_light[finds_[i].from] += finds_[i].light;
+            if (finds_[i].from != no_index) of_light[finds_[i].from] += finds_[i].light;
             if (std::isinf(finds_[i].in_a_sample)) result.never += finds_[i].light / passes / mean_;
         }
-        double sum = 0, squares = 0;
-        for (const double m : of_pass) sum += m;
-        for (const double m : of_pass) squares += std::pow(m - sum / passes, 2);
-        result.share = sum / passes / mean_;
-        result.error = std::sqrt(squares / (passes * (passes - 1))) / mean_;
+        RunningMoments missing, residuals; // of the ratio of two means (Cochran 1977, section 2.11)
+        for (const double m : of_pass) missing.add(m);
+        result.share = missing.mean() / mean_;
+        for (std::size_t i = 0; i < of_pass.size(); ++i) residuals.add(of_pass[i] - result.share * means_[i]);
+        result.error = residuals.standard_error() / mean_;
         if (!of_light.empty())
             result.light =
                 std::ranges::max_element(of_light, {}, [](const auto& l) { return l.second; })->first;
@@ -146,20 +146,6 @@ class MissingLightEstimate {
                             crop_.y0 + static_cast<int>(pixel / width), pass});
         }
         return keys;
-    }
-
-    // The width of 1.5 pixels of a film that has as many pixels as a pass has samples: blurred light is still there.
-    double merging_radius() const {
-        RayTracer tracer(accelerator_);
-        std::vector<double> sizes;
-        for (const SampleContext::Key& key : keys_of(most_passes))
-            if (const auto size = context_.visible_pixel(tracer, key); size && *size > 0)
-                sizes.push_back(*size);
-        if (sizes.empty()) return 1e-3 * std::max(accelerator_.bounds().radius(), 1e-30);
-        const auto middle = sizes.begin() + static_cast<std::ptrdiff_t>(sizes.size() / 2);
-        std::nth_element(sizes.begin(), middle, sizes.end());
-        return blur_in_pixels * *middle *
-               std::sqrt(static_cast<double>(pixels_) / static_cast<double>(count_));
     }
 
     PixelBounds crop_;

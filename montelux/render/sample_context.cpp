@@ -272,7 +272,8 @@ void SampleContext::find_paths(RayTracer& tracer, const Key& key, BidirectionalM
         if (path.film == nullptr) rgb = rgb * (point.weight * point.filter.weight);
         const std::size_t strategy = path.merged != nullptr ? path.densities.vertices() + path.s : path.s;
         visit({path.s, path.t, path.film, rgb, path.weight,
-               path_tracing_density(path.densities, strategy, scratch), path.end.light});
+               path_tracing_density(path.densities, strategy, scratch),
+               path.merged != nullptr ? no_index : path.end.light});
     };
     const PathObserver observer{
         [](void* self, const FoundPath& path) { (*static_cast<decltype(found)*>(self))(path); }, &found};

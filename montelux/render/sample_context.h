@@ -106,7 +106,7 @@ class SampleContext {
                                     // weight applied, but to splats
         double weight = 0;          // among the strategies that find the path
         double by_path_tracing = 0; // path_tracing_density
-        Index light = no_index;     // where it begins
+        Index light = no_index;     // where it begins; of a merged path not known
     };
     void find_paths(RayTracer& tracer, const Key& key, BidirectionalMemory& memory,
                     const std::function<void(const FilmPath&)>& visit) const;

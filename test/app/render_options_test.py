@@ -135,6 +135,16 @@ Material "diffuse" Shape "bilinearmesh" "point3 P" [-5 -5 -1  5 -5 -1  -5 5 -1  
                 self.expect(0, "", f"{line} --integrator {kind} --quiet -o by_name.pfm")
                 self.assert_same("by_name.pfm", "chosen.pfm")
 
+    def test_path_tracing_is_not_chosen_where_it_lacks_light(self):
+        """A lamp in a bulb of glass beside a bare one."""
+        scene("bulb", """LightSource "point" "rgb I" [20 20 20] "point3 from" [2 4 1]
+LightSource "point" "rgb I" [3 3 3] "point3 from" [0 0 0.8] Material "diffuse" Shape "disk" "float radius" 20
+Material "dielectric" Translate 0 0 0.8 Shape "sphere" "float radius" 0.3""", 32, 24)
+        line = "render bulb.pbrt --target-error 10% -o bulb.exr"
+        self.expect(3, "target missed: light is missing & path tracing cannot find light of the point light", line)
+        self.expect(0, "integrator bidirectional: path tracing would lack & target reached",
+                    line + " --integrator auto")  # fmt: skip
+
     def test_refusals(self):
         self.expect_each("""
             0 the render is too short to try bidirectional and metropolis $ --spp 4
